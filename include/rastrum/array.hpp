@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Views of values in a caller's memory, whatever the type of their numbers and their stride.
-// Nothing is copied, so the memory must outlive the view. How a view's values are read is decided
-// once, when it is made: what lies as the renderer has it (packed float32, packed 32-bit indices)
-// is read in place, everything else by functions of its type, in runs.
+// Views of values in a caller's memory, with numbers of any type and any stride. Nothing is copied,
+// so the memory must outlive the view. A view decides once, when it is made, how its values are
+// read: packed float32 and packed uint32 indices in place, all others by functions of their type,
+// in runs.
 #pragma once
 
 #include <bit>
@@ -37,28 +37,29 @@ enum class NumberType : std::uint8_t {
 };
 [[nodiscard]] std::size_t bytes_of(NumberType type) noexcept;
 
-/// Where `count` values lie in a buffer, for callers that know their types at run time only.
+/// Where `count` values lie in a buffer, for callers that know the type at run time only.
 struct ArrayLayout {
   NumberType type = NumberType::float32;
-  int channels = 1;  ///< numbers a value
+  int channels = 1;  ///< numbers in each value
   std::size_t count = 0;
   std::size_t offset_bytes = 0;  ///< where the first value begins
-  /// From one value to the next; none: they are packed.
+  /// Bytes from one value to the next; none: the values are packed.
   std::optional<std::ptrdiff_t> stride_bytes{};
 };
 
-/// The numbers of values: float32 and float64 as they are; 8 and 16 bits normalized linearly as in
-/// glTF, unsigned ones to [0, 1], signed ones to [−1, 1] (the least counts as −1).
+/// The types of the numbers in values. float32 and float64 are taken as they are. 8 and 16 bits are
+/// normalized linearly as in glTF: unsigned ones to [0, 1], signed ones to [−1, 1] (the least
+/// counts as −1).
 template <class C>
 concept ValueNumber =
     std::same_as<C, float> || std::same_as<C, double> || std::same_as<C, std::uint8_t> ||
     std::same_as<C, std::int8_t> || std::same_as<C, std::uint16_t> || std::same_as<C, std::int16_t>;
 
-/// The numbers of indices and offsets: integers of any size and sign.
+/// The types of indices and offsets: integers of any size and sign.
 template <class C>
 concept IndexNumber = std::integral<C> && !std::same_as<C, bool>;
 
-/// The values of a view: 1 to 4 float32.
+/// The types of the values in a view: float, Vec2, Vec3 or Vec4.
 template <class T>
 concept ViewedValue = std::same_as<T, float> || Vector<T>;
 
@@ -67,42 +68,43 @@ namespace array_detail {
 template <class T>
 inline constexpr int kChannels = static_cast<int>(sizeof(T) / sizeof(float));
 
-/// A position in float64; nobody asks for other values in float64.
+/// Positions (Vec3) can be read in float64. Other values cannot, because nobody needs it.
 template <class T>
 using Wide = std::conditional_t<std::same_as<T, Vec3>, Vec3d, T>;
 
-/// How the values of one type are read.
+/// The functions that read values of one type.
 template <class T>
 struct Reader {
   bool wide;  ///< the numbers are float64
   T (*at)(const std::byte* value);
   Wide<T> (*wide_at)(const std::byte* value);
-  /// Values 0 to n from `first` on.
+  /// Reads n values from `first` on.
   void (*run)(const std::byte* first, std::ptrdiff_t stride, std::size_t n, T* out);
   void (*wide_run)(const std::byte* first, std::ptrdiff_t stride, std::size_t n, Wide<T>* out);
-  /// The values that `indices` name.
+  /// Reads the values that `indices` name, of which 0 lies at `first`.
   void (*gather)(const std::byte* first, std::ptrdiff_t stride, const std::uint32_t* indices,
                  std::size_t n, T* out);
   void (*wide_gather)(const std::byte* first, std::ptrdiff_t stride, const std::uint32_t* indices,
                       std::size_t n, Wide<T>* out);
 };
 
-/// For `channels` numbers of type C; the fourth of a Vec4 that has three is 1.
+/// The reader of values with `channels` numbers of type C; a Vec4 of 3 channels gets 1 as its
+/// fourth.
 template <class T, class C>
 [[nodiscard]] RASTRUM_API const Reader<T>& reader(int channels) noexcept;
 
-/// How integers of one type are read, as int64 bits; `is_signed`: what they mean.
+/// The functions that read integers of one type as 64 bits, which are an int64 if `is_signed`.
 struct IndexReader {
   bool is_signed;
-  std::size_t bytes;  ///< the size of one
+  std::size_t bytes;  ///< in each integer
   std::uint64_t (*at)(const std::byte* value);
-  /// As IndexView::operator[].
+  /// Reads n indices from `first` on, as IndexView::operator[] gives them.
   void (*run)(const std::byte* first, std::ptrdiff_t stride, std::size_t n, std::uint32_t* out);
 };
 template <class C>
 [[nodiscard]] RASTRUM_API const IndexReader& index_reader() noexcept;
 
-/// Fixed widths, so that `long` and `long long` are one.
+/// The integer of fixed width like C, so that `long` and `long long` are one type.
 template <class C>
 using Fixed = std::conditional_t<
     sizeof(C) == 8, std::conditional_t<std::is_signed_v<C>, std::int64_t, std::uint64_t>,
@@ -112,7 +114,7 @@ using Fixed = std::conditional_t<
                            std::conditional_t<std::is_signed_v<C>, std::int16_t, std::uint16_t>,
                            std::conditional_t<std::is_signed_v<C>, std::int8_t, std::uint8_t>>>>;
 
-/// Vectors, arrays and spans: what std::span takes. (To ask <ranges> costs twice its compile time.)
+/// Vectors, arrays and spans: all that std::span takes. (<ranges> takes twice as long to compile.)
 template <class R>
 concept Contiguous = requires(R& r) {
   std::span(r);
@@ -120,7 +122,7 @@ concept Contiguous = requires(R& r) {
 template <class R>
 using ElementOf = std::remove_cv_t<typename decltype(std::span(std::declval<R&>()))::element_type>;
 
-/// `R` as a forwarding reference has it: the memory stays where it is when the expression ends.
+/// Whether the memory of an argument `R&&` outlives the expression: it has a name, or R is a view.
 template <class R>
 concept Lasting =
     std::is_lvalue_reference_v<R> || std::ranges::enable_borrowed_range<std::remove_cvref_t<R>>;
@@ -166,7 +168,7 @@ concept NumbersOf = sizeof(E) == n * sizeof(C) && std::is_trivially_destructible
                       is_aggregate_of<E, C>(std::make_index_sequence<n>{})) ||
                      (IsIndexed<E, C> && is_made_of<E, C>(std::make_index_sequence<n>{})));
 
-/// The first of these types of which E is `n` numbers; void: none.
+/// The first of the types C and Others for which E is `n` numbers; void if there is none.
 template <class E, std::size_t n, class C, class... Others>
 consteval auto number_in() {
   if constexpr (NumbersOf<E, C, n>)
@@ -191,7 +193,7 @@ template <class E, std::size_t n>
 concept IndicesOf = requires {
   typename IndexIn<E, n>;
 };
-/// One index or, for edges, triangles and quads, two to four.
+/// How many indices an E holds: one or, for edges, triangles and quads, two to four; else 0.
 template <class E>
 inline constexpr std::size_t kIndicesIn = IndicesOf<E, 1>   ? 1
                                           : IndicesOf<E, 2> ? 2
@@ -202,7 +204,7 @@ inline constexpr std::size_t kIndicesIn = IndicesOf<E, 1>   ? 1
 template <class R, class T>
 concept ValuesOf = Contiguous<R> &&
     (FlatNumber<ElementOf<R>> || FloatsOf<ElementOf<R>, static_cast<std::size_t>(kChannels<T>)>);
-/// Objects as large as T in float32 or float64 that do not show of which numbers they are.
+/// Objects as large as T in float32 or float64 whose type does not show which numbers they hold.
 template <class R, class T>
 concept UntoldOf = Contiguous<R> && !ValuesOf<R, T> && std::is_class_v<ElementOf<R>> &&
                    (sizeof(ElementOf<R>) == sizeof(T) || sizeof(ElementOf<R>) == 2 * sizeof(T));
@@ -213,7 +215,7 @@ concept Indices = (kIndicesIn<ElementOf<R>> > 0);
   return reinterpret_cast<std::uintptr_t>(p) % to == 0;
 }
 
-/// These throw Error{invalid_argument}.
+/// This and the next function throw Error{invalid_argument}.
 [[noreturn]] void refuse_null(std::size_t count);
 [[noreturn]] void refuse_flat(std::size_t numbers, int a_value);
 [[nodiscard]] inline const std::byte* values_at(const void* p, std::size_t count) {
@@ -232,20 +234,20 @@ concept Indices = (kIndicesIn<ElementOf<R>> > 0);
 
 }  // namespace array_detail
 
-/// `size()` values of type T. A stride counts bytes from value to value; it may be larger than a
-/// value (a vertex of an interleaved buffer), smaller or negative (views are only read), and 0: one
-/// value for all. Numbers need no alignment. Null with a count above 0 throws
-/// Error{invalid_argument}.
+/// A view of `size()` values of type T. The stride is the bytes from one value to the next. It may
+/// be larger than a value (a vertex of an interleaved buffer), smaller or negative (views are only
+/// read), or 0, which gives one value for all. Numbers need no alignment. A null pointer with a
+/// count above 0 throws Error{invalid_argument}.
 template <ViewedValue T>
 class ArrayView {
  public:
   using Wide = array_detail::Wide<T>;
 
   ArrayView() = default;
-  /// Vectors, arrays and spans that last: of T; of any type that shows that it is as many floats or
-  /// doubles (Vec3d, float[3], std::array, other libraries' vectors; docs/arrays.md); or of the
-  /// numbers themselves, one value's after the other's, which throws Error{invalid_argument} where
-  /// they are no whole values.
+  /// Views a vector, array or span that outlives the expression. Its elements are T, or of a type
+  /// that shows that it is as many floats or doubles (Vec3d, float[3], std::array, other libraries'
+  /// vectors; docs/arrays.md), or the numbers themselves, value after value. Throws
+  /// Error{invalid_argument} if such numbers make no whole values.
   template <array_detail::ValuesOf<T> R>
   requires array_detail::Lasting<R> ArrayView(R&& values)
       : ArrayView(packed_in(std::span(values))) {}
@@ -254,28 +256,28 @@ class ArrayView {
   template <array_detail::UntoldOf<T> R>
   ArrayView(R&&) = delete;  // its type does not show its numbers: ArrayView::of(numbers, n, stride)
 
-  /// `count` values, each of as many numbers as T has. A packed array without `stride_bytes`.
+  /// Views `count` values, each of as many numbers as T has; packed without `stride_bytes`.
   template <ValueNumber C>
   [[nodiscard]] static ArrayView of(const C* numbers, std::size_t count,
                                     std::ptrdiff_t stride_bytes = array_detail::kChannels<T> *
                                                                   sizeof(C)) {
     return ArrayView(numbers, array_detail::kChannels<T>, count, stride_bytes);
   }
-  /// Colours without alpha, which is 1.
+  /// Views colours of three numbers; their alpha is 1.
   template <ValueNumber C>
   requires std::same_as<T, Vec4>
   [[nodiscard]] static ArrayView rgb(const C* numbers, std::size_t count,
                                      std::ptrdiff_t stride_bytes = 3 * sizeof(C)) {
     return ArrayView(numbers, 3, count, stride_bytes);
   }
-  /// Values in a buffer. Throws Error{invalid_argument} where one of them reaches beyond it, the
+  /// Views values in a buffer. Throws Error{invalid_argument} if one of them reaches beyond it, the
   /// type is none of ValueNumber's, or the channels are not T's (a Vec4 may have 3).
   [[nodiscard]] static ArrayView in(std::span<const std::byte> buffer, const ArrayLayout& layout);
 
   [[nodiscard]] RASTRUM_HD std::size_t size() const { return size_; }
   [[nodiscard]] RASTRUM_HD bool empty() const { return size_ == 0; }
 
-  /// Whether it is T after T in float32: what a device reads.
+  /// Whether the values are float32, one after the other: devices read no others.
   [[nodiscard]] RASTRUM_HD bool is_packed() const { return reader_ == nullptr; }
   /// Requires is_packed().
   [[nodiscard]] RASTRUM_HD std::span<const T> packed() const { return {data(), size_}; }
@@ -291,7 +293,7 @@ class ArrayView {
 #endif
     return data()[i];
   }
-  /// The same without rounding, where it is float64.
+  /// Value i; positions (Vec3) in float64, without rounding.
   [[nodiscard]] RASTRUM_HD Wide wide(std::size_t i) const {
 #if !defined(__CUDA_ARCH__)
     if (reader_ != nullptr) return reader_->wide_at(place(i));
@@ -302,7 +304,7 @@ class ArrayView {
     return reader_ != nullptr && is_float64();
   }
 
-  /// All that it views, in memory.
+  /// The memory that it views, from the lowest value to the highest.
   [[nodiscard]] std::span<const std::byte> reach() const {
     return array_detail::reach(data_, size_, stride_, is_packed() ? sizeof(T) : 1);
   }
@@ -318,7 +320,7 @@ class ArrayView {
   void read_wide(std::size_t first, std::size_t n, Wide* out) const {
     reader_->wide_run(place(first), stride_, n, out);
   }
-  /// The values that `indices` name, which are < size().
+  /// Copies the values at `indices`, which must be < size().
   void gather(std::span<const std::uint32_t> indices, T* out) const {
     reader_->gather(data_, stride_, indices.data(), indices.size(), out);
   }
@@ -366,19 +368,19 @@ class ArrayView {
 /// Stands for an index that is negative or does not fit into 32 bits: it is out of every range.
 inline constexpr std::uint32_t kNoIndex = std::numeric_limits<std::uint32_t>::max();
 
-/// `size()` indices or offsets of any integer type. Strides and null follow ArrayView's rules.
+/// A view of `size()` indices or offsets of any integer type; strides and null are as in ArrayView.
 class IndexView {
  public:
   IndexView() = default;
-  /// Vectors, arrays and spans of integers, or of pairs, triples and quadruples of them (int[3],
-  /// std::array, other libraries' vectors), whose indices follow each other.
+  /// Views a vector, array or span of integers, or of pairs, triples and quadruples of them
+  /// (int[3], std::array, other libraries' vectors), whose indices follow each other.
   template <array_detail::Indices R>
   requires array_detail::Lasting<R> IndexView(R&& values)
       : IndexView(packed_in(std::span(values))) {}
   template <array_detail::Indices R>
   IndexView(R&&) = delete;  // this array ends before its view does: give it a name first
 
-  /// `count` integers. A packed array without `stride_bytes`.
+  /// Views `count` integers. Without `stride_bytes` they are packed.
   template <IndexNumber C>
   [[nodiscard]] static IndexView of(const C* indices, std::size_t count,
                                     std::ptrdiff_t stride_bytes = sizeof(C)) {
@@ -392,13 +394,13 @@ class IndexView {
     if (!packed) v.reader_ = &array_detail::index_reader<Fixed>();
     return v;
   }
-  /// Indices in a buffer. Throws Error{invalid_argument} where one of them reaches beyond it, or
-  /// the layout is not of one integer an index.
+  /// Views indices in a buffer. Throws Error{invalid_argument} if one of them reaches beyond it, or
+  /// if the layout does not have one integer for each index.
   [[nodiscard]] static IndexView in(std::span<const std::byte> buffer, const ArrayLayout& layout);
 
   [[nodiscard]] RASTRUM_HD std::size_t size() const { return size_; }
   [[nodiscard]] RASTRUM_HD bool empty() const { return size_ == 0; }
-  /// Whether it is uint32 after uint32: what a device reads.
+  /// Whether the indices are uint32, one after the other: devices read no others.
   [[nodiscard]] RASTRUM_HD bool is_packed() const { return reader_ == nullptr; }
   /// Requires is_packed().
   [[nodiscard]] RASTRUM_HD std::span<const std::uint32_t> packed() const { return {data(), size_}; }
@@ -406,7 +408,7 @@ class IndexView {
     return static_cast<const std::uint32_t*>(static_cast<const void*>(data_));
   }
 
-  /// Index i < size(); kNoIndex for what is negative or 2³² − 1 or more.
+  /// Index i < size(); kNoIndex if it is negative or at least 2³² − 1.
   [[nodiscard]] RASTRUM_HD std::uint32_t operator[](std::size_t i) const {
 #if !defined(__CUDA_ARCH__)
     if (reader_ != nullptr) {
@@ -416,21 +418,21 @@ class IndexView {
 #endif
     return data()[i];
   }
-  /// The same in 64 bits, for offsets. Negative ones are 2⁶³ and more.
+  /// Index i in 64 bits, for offsets. Negative ones become 2⁶³ and more.
   [[nodiscard]] std::uint64_t wide(std::size_t i) const {
     return reader_ == nullptr ? data()[i] : reader_->at(place(i));
   }
-  /// Index i without conversion, for messages.
+  /// Index i in decimal digits, without conversion, for messages.
   [[nodiscard]] std::string text(std::size_t i) const;
-  /// Indices first to first + n, as operator[].
+  /// Copies indices [first, first + n) to `out`, as operator[] gives them.
   void read(std::size_t first, std::size_t n, std::uint32_t* out) const {
     if (reader_ != nullptr)
       reader_->run(place(first), stride_, n, out);
     else if (n != 0)
       std::memcpy(out, data() + first, n * sizeof(std::uint32_t));
   }
-  /// Where index 0 has its lowest 32 bits, which are all that an index in range has, and how many
-  /// bytes further the next one has them; null where integers are of fewer.
+  /// Where the lowest 32 bits of index 0 lie (an index in range has no others), and how many bytes
+  /// further those of the next index lie. `first` is null if the integers have fewer bits.
   struct Words {
     const std::byte* first;
     std::ptrdiff_t stride;
@@ -440,11 +442,11 @@ class IndexView {
     const bool wide_enough = reader_ == nullptr || reader_->bytes >= sizeof(std::uint32_t);
     return {wide_enough ? data_ : nullptr, stride_};
   }
-  /// All that it views, in memory.
+  /// The memory that it views, from the lowest value to the highest.
   [[nodiscard]] std::span<const std::byte> reach() const {
     return array_detail::reach(data_, size_, stride_, is_packed() ? sizeof(std::uint32_t) : 1);
   }
-  /// Indices first to first + n, as a view.
+  /// A view of indices [first, first + n).
   [[nodiscard]] IndexView subview(std::size_t first, std::size_t n) const {
     IndexView part = *this;
     part.data_ = place(first);

@@ -9,11 +9,11 @@
 #define RASTRUM_HD
 #endif
 
-/// The same for functions that loops over lanes must inline, whatever their instruction set.
+/// Marks such a function that loops over SIMD lanes must inline, whatever their instruction set.
 #define RASTRUM_HD_LEAF RASTRUM_HD inline __attribute__((always_inline))
 
-/// A shared library shows what is declared in namespaces with RASTRUM_API, but for classes with
-/// RASTRUM_INSIDE, which a header names and does not define.
+/// A shared library exports what namespaces with RASTRUM_API declare, but not the classes with
+/// RASTRUM_INSIDE, which a header declares and does not define.
 #if defined(__CUDACC__)
 #define RASTRUM_API
 #define RASTRUM_INSIDE

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Digests of pictures: equal digests are equal pictures, on whatever machine and by whatever way
-// they were drawn (docs/conventions.md, "Equal pictures").
+// Digests of pictures: two pictures are equal if their digests are, on whatever machine and in
+// whatever way they were drawn (docs/conventions.md, "Equal pictures").
 #pragma once
 
 #include <array>
@@ -20,12 +20,12 @@ struct Digest {
   bool operator==(const Digest&) const = default;
 };
 
-/// The digest of a line with type and shape and of the rows from the top, little-endian, without
-/// the memory between rows. In Python, for an array `a` of such pixels:
+/// The digest of a line with type and shape, then the rows from the top, little-endian, without the
+/// memory between rows. In Python, for an array `a` of such pixels:
 ///   hashlib.sha256(f"{a.dtype} {'x'.join(map(str, a.shape))}\n".encode() + a.tobytes())
 /// where a shape is (height, width) or (height, width, channels): "uint8 720x1280x4" for 8-bit
-/// colours. A NaN counts as 0x7fc00000, whatever its sign and payload, in which processors differ.
-/// Cost: about 3.5 ms a megabyte. Throws Error{invalid_argument} for rows that overlap.
+/// colours. A NaN counts as 0x7fc00000, because processors differ in its sign and payload.
+/// Cost: about 3.5 ms per megabyte. Throws Error{invalid_argument} for rows that overlap.
 [[nodiscard]] Digest digest(ImageView<const Rgba8> image);
 [[nodiscard]] Digest digest(ImageView<const Vec4> image);  ///< float32, four channels
 [[nodiscard]] Digest digest(ImageView<const Vec3> image);  ///< float32, three channels
@@ -36,7 +36,7 @@ struct Digest {
 [[nodiscard]] Digest digest(ImageView<const std::uint64_t> image);
 [[nodiscard]] Digest digest(ImageView<const std::int32_t> image);
 [[nodiscard]] Digest digest(ImageView<const std::int64_t> image);
-/// The same for an owned image.
+/// The digest of an owned image.
 template <class T>
 [[nodiscard]] Digest digest(const Image<T>& image) {
   return digest(image.view());
