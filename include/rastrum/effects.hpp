@@ -3,9 +3,9 @@
 // lighting, silhouettes, the edges of meshes (docs/overlay.md has the formulas, decision 0051 the
 // reasons).
 //
-// Each makes an image of factors in [0, 1], 1 where it leaves the picture as it is and where
-// nothing is drawn; darken() brings them into colours. With several samples a pixel the depth and
-// the normals are those of the nearest surface, as Targets has them. The same bits for every number
+// Each effect makes an image of factors in [0, 1], 1 where the picture stays as it is and where
+// nothing is drawn; darken() applies them to colours. With several samples a pixel, depth and
+// normals are those of the nearest surface, as in Targets. The bits are the same for every number
 // of threads and instruction set.
 #pragma once
 
@@ -25,101 +25,104 @@ namespace RASTRUM_API rastrum {
 /// How much of the light from all around reaches a point: McGuire, Mara and Luebke, Scalable
 /// Ambient Obscurance (HPG 2012), with a fixed pattern of samples.
 struct AmbientOcclusion {
-  double radius = 0;    ///< in the world, of what takes light from a point; 1e-37 to 1e37
+  /// Surfaces nearer than this, in world units, take light from a point. 1e-37 to 1e37, and at
+  /// least 1e-30 of the picture's depths.
+  double radius = 0;
   double strength = 1;  ///< [0, 16]
-  int samples =
-      8;  ///< a pixel, 1 to 64; the blur spans 4 × 4 pixels, so that many times as many count
+  int samples = 8;      ///< at each pixel, 1 to 64; a blur averages those of 4 × 4 pixels
 };
 
-/// Shades each pixel by how far it lies behind those around (Boucheny 2009): shape for points,
-/// which have no normals.
+/// Shades each pixel by how far it lies behind its neighbours (Boucheny 2009). So points, which
+/// have no normals, show their shape.
 struct EyeDome {
   double strength = 1;  ///< [0, 100]
-  int radius_px = 2;    ///< 1 to 64
+  int radius_px = 2;    ///< how far away the neighbours are, 1 to 64
 };
 
+/// Lines where surfaces end, bend or meet another instance.
 struct Silhouettes {
-  double depth = 0.01;        ///< a step of more than this part of the distance is an edge; 0: none
-  double angle_degrees = 35;  ///< normals that differ by more are an edge; 180: none
-  bool instances = true;      ///< where ids differ, too
+  double depth = 0.01;        ///< larger steps, in parts of the distance, are lines; 0: none
+  double angle_degrees = 35;  ///< normals that differ by more are a line, [0, 180]; 180: none
+  bool instances = true;      ///< also where Surface::ids differ
   int width_px = 1;           ///< 1 to 16
 };
 
-/// Images of a frame (Targets). All have one size; normals and ids may be empty.
+/// The images of a frame that effects read. All have one size; normals and ids may be empty.
 struct Surface {
   ImageView<const float> view_depth{};  ///< Targets::view_depth
   ImageView<const Vec3> normals{};      ///< Targets::camera_normals
-  ImageView<const std::int64_t> ids{};  ///< Targets::instances, or any other number
+  ImageView<const std::int64_t> ids{};  ///< Targets::instances, or other numbers
 };
 
-/// Which sides of a scene's triangles Effects::edges draws. The scene's arrays must outlive it.
+/// The sides of a scene's triangles that Effects::edges draws. The scene's arrays must outlive it.
 class SceneEdges {
  public:
-  /// The edges of the faces of all meshes; lines that cut quads and polygons into triangles are
-  /// none. With an angle, in [0, 180] degrees, an edge between two faces counts only if they meet
-  /// at more; borders, and edges of three faces and more, always count. Equal positions are one
-  /// point, so a triangle soup has neighbours, too. Cost: O(n log n) and about 100 bytes a triangle
-  /// meanwhile, for an angle and for quads and polygons; a byte a triangle afterwards. Throws
+  /// Finds the edges of the faces of all meshes; lines that cut quads and polygons into triangles
+  /// are none. With an angle, in [0, 180] degrees, an edge between two faces counts only if they
+  /// meet at more; borders, and edges of three or more faces, always count. Equal positions are one
+  /// point, so a triangle soup has neighbours, too. Cost, for an angle and for quads and polygons:
+  /// O(n log n) and meanwhile about 100 bytes per triangle, of which one stays. Throws
   /// Error{invalid_argument} for an angle or index out of range.
   explicit SceneEdges(const SceneView& scene, double angle_degrees = 0);
 
   struct Place {
     std::size_t instance;
-    std::uint64_t primitive;  ///< of that instance
+    std::uint64_t primitive;  ///< its number within that instance
   };
-  /// The triangle of a number of Targets::ids. Throws Error{invalid_argument} for a number that the
-  /// scene does not have.
+  /// The primitive whose number in Targets::ids is `id`. Throws Error{invalid_argument} for a
+  /// number that the scene does not have.
   [[nodiscard]] Place find(std::int64_t id) const;
-  /// Bit c: the side from corner c to the next. 0 for other geometries. Throws likewise.
+  /// Bit c: the side from corner c to the next is drawn. 0 for other geometries. Throws as find().
   [[nodiscard]] std::uint8_t sides(const Place& place) const;
   [[nodiscard]] const SceneView& scene() const { return scene_; }
 
  private:
   SceneView scene_;
-  std::vector<std::uint64_t> first_ids_;           ///< one more than instances
-  std::vector<std::size_t> table_of_;              ///< of an instance
+  std::vector<std::uint64_t> first_ids_;           ///< for each instance, then the number of all
+  std::vector<std::size_t> table_of_;              ///< for each instance
   std::vector<std::vector<std::uint8_t>> tables_;  ///< empty: all sides
 };
 
-/// The materials with which effects see a scene whose textures blend: masks that are cut at an
-/// alpha of 0.5, because the quad around a leaf is no surface. Empty where no texture blends, since
-/// then effects can take the frame's surface. Cost: O(materials).
+/// The materials with which a scene whose textures blend is drawn once more for its effects: masks
+/// that are cut at an alpha of 0.5, because the quad around a leaf is no surface. Empty if no
+/// texture blends; then the effects take the frame's surface. Cost: O(materials).
 [[nodiscard]] std::vector<Material> materials_of_surface(const SceneView& scene);
 
-/// Keeps threads and scratch between pictures. Threads: calls take turns.
+/// Keeps threads and scratch between pictures. Several threads may call it, and take turns.
 class Effects {
  public:
-  /// `threads` 0: all. Throws Error{no_device} for an instruction set that is not there.
+  /// `threads` 0: all of the machine. Throws Error{no_device} for an instruction set that it lacks.
   explicit Effects(int threads = 0, std::optional<Isa> isa = {});
   ~Effects();
   Effects(Effects&&) noexcept;
   Effects& operator=(Effects&&) noexcept;
 
-  /// Without `normals` those of the surface that neighbours in depth span: faces', and cheaper than
-  /// a frame's own. Where a pixel has none (points and lines in `normals`) nothing is taken from
-  /// it. Throws Error{invalid_argument} for images that differ in size, options out of range and a
-  /// camera whose planes of equal depth are not across its axis. Cost: pixels · samples.
+  /// Without Surface::normals it finds the faces' normals from the depths of neighbours, which is
+  /// cheaper than a frame's own. A pixel without a normal (points and lines in `normals`) keeps its
+  /// light. Throws Error{invalid_argument} for images that differ in size, options out of range and
+  /// a camera whose planes of equal depth are not perpendicular to its axis. Cost: pixels ·
+  /// samples.
   void ambient_occlusion(const Surface& surface, const Camera& camera,
                          const AmbientOcclusion& options, ImageView<float> factor);
-  /// The same and darken() with it at once, without an image between them: what `--studio` does.
-  /// Looks at no colours where nothing is seen.
+  /// Does ambient_occlusion() and darken() at once, without an image between them, as `--studio`
+  /// does. It touches no colours where nothing is seen.
   void occlude(const Surface& surface, const Camera& camera, const AmbientOcclusion& options,
                ImageView<Rgba8> color8, ImageView<Vec4> color, Vec3 ink = {0, 0, 0});
   void eye_dome(const Surface& surface, const Camera& camera, const EyeDome& options,
                 ImageView<float> factor);
-  /// An edge lies on the nearer of two surfaces, `width_px` wide.
+  /// Lines lie on the nearer of two surfaces. This and eye_dome() throw as ambient_occlusion().
   void silhouettes(const Surface& surface, const Camera& camera, const Silhouettes& options,
                    ImageView<float> factor);
 
-  /// The edges of the triangles in view, `width_px` wide, (0, 64]; `ids` are Targets::ids of a
-  /// frame of the edges' scene by `camera`. Each pixel shows those of the triangle that it sees, so
-  /// of an edge at which the surface ends the half that lies on it. Throws Error{invalid_argument}
-  /// for an id that the scene has not. Cost: O(pixels), about 100 ns where triangles are small.
+  /// Finds the edges of the triangles in view, `width_px` wide, (0, 64]. `ids` are Targets::ids of
+  /// a frame of edges.scene() by `camera`. Each pixel shows the edges of the triangle that it sees,
+  /// so an edge at which the surface ends has half the width. Throws Error{invalid_argument} for an
+  /// id that the scene does not have. Cost: O(pixels), about 100 ns each where triangles are small.
   void edges(ImageView<const std::int64_t> ids, const SceneEdges& edges, const Camera& camera,
              double width_px, ImageView<float> factor);
 
-  /// Colours become c · factor + ink · (1 − factor); alpha stays. `color8` is straight, `color`
-  /// premultiplied; either may be empty.
+  /// Replaces each colour c by c · factor + ink · (1 − factor); alpha stays. `color8` is straight,
+  /// `color` premultiplied; either may be empty.
   void darken(ImageView<Rgba8> color8, ImageView<Vec4> color, ImageView<const float> factor,
               Vec3 ink = {0, 0, 0});
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The surroundings of a scene: a picture over all directions, made into a light once and used by
-// any number of frames (docs/light.md, "Environments"; decision 0061).
+// The surroundings of a scene: a picture of all directions, which is made into a light once and
+// used by any number of frames (docs/light.md, "Environments"; decision 0061).
 #pragma once
 
 #include <rastrum/held.hpp>
@@ -18,12 +18,12 @@ class Environment {
  public:
   Environment(const Environment&) = default;
   Environment& operator=(const Environment&) = default;
-  /// `picture`: linear radiance over all directions, equirectangular, twice as wide as high: its
-  /// top row is straight up (+y), its middle lies at −z, and right of it at +x. So a camera that
-  /// looks along −z has the middle before it, the right way round. `threads` 0: all. Throws
-  /// Error{invalid_argument} for another shape, and for the first pixel with a value that is not in
-  /// [0, 1e12]. Cost: O(pixels), and about 0.3 s of one core for the reflections of rough surfaces;
-  /// 16 B · min(height, 2048)² of memory.
+  /// `picture`: linear radiance over all directions, equirectangular, twice as wide as high. Its
+  /// top row is straight up (+y), its middle lies at −z, and +x is right of that. So a camera that
+  /// looks along −z sees the middle ahead, not mirrored. `threads` 0: all of the machine. Throws
+  /// Error{invalid_argument} for another shape, and for the first pixel with a value outside [0,
+  /// 1e12]. Cost: O(pixels), and about 0.3 s of one core for the reflections of rough surfaces; 16
+  /// B · min(height, 2048)² of memory.
   explicit Environment(ImageView<const Vec3> picture, int threads = 0);
 
   /// The mean of `picture` over all directions.
@@ -34,7 +34,7 @@ class Environment {
   Shared<const environment_detail::Data> data_;
 };
 
-/// Skies of our own, 1024 × 512, for those who have no picture at hand.
+/// Built-in pictures of 1024 × 512 pixels, for those who have none at hand.
 enum class BuiltinEnvironment {
   sky,   ///< a clear sky over grey ground, with a sun from the upper right
   room,  ///< a grey room whose ceiling and walls have lamps: soft light with shape

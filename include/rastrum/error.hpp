@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The one exception for the outside world: bad files, bad arguments, lack of memory. A caller's bug
-// inside the library is an assert instead.
+// The exception that the library throws: for bad files, bad arguments and lack of memory. A
+// caller's bug inside the library is an assert instead.
 #pragma once
 
 #include <stdexcept>
@@ -17,8 +17,8 @@ enum class Errc {
   bad_format,        ///< the file is not what it claims to be
   unsupported,       ///< valid, but outside what Rastrum does
   out_of_memory,     ///< the message says what was asked for
-  no_device,         ///< the backend is not available here
-  stopped,           ///< as asked; the exception is Stopped (stop.hpp)
+  no_device,         ///< a device or instruction set that is not available here
+  stopped,           ///< on request; the exception is Stopped (stop.hpp)
 };
 
 /// `what()` is a whole sentence for a person: it names the file, line or argument, and what to do.
