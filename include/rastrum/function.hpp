@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A function that a call takes and does not keep, and one that is kept. <functional>, which has the
-// second, costs more time to compile than most of what includes this.
+// FunctionRef, a function that a call takes and does not keep, and Function, one that is kept.
+// <functional>, which has the second, takes longer to compile than most of what includes this.
 #pragma once
 
 #include <type_traits>
@@ -17,7 +17,7 @@ template <class Signature>
 class Function;
 
 /// Refers to anything that can be called as R(Args…): a function, a lambda, a std::function. It
-/// must live as long as this, so take one as a parameter and do not keep it. Null without one.
+/// must live as long as this, so take this as a parameter and do not keep it. Null by default.
 template <class R, class... Args>
 class FunctionRef<R(Args...)> {
  public:
@@ -55,7 +55,7 @@ class FunctionRef<R(Args...)> {
   };
 };
 
-/// The same with a copy of what it calls, which its own copies share.
+/// Holds a copy of anything that can be called as R(Args…). Copies of a Function share it.
 template <class R, class... Args>
 class Function<R(Args...)> {
  public:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Pointers to the hidden members of a class. They do what std::unique_ptr and std::shared_ptr do;
-// <memory>, which has those, costs more time to compile than most of what includes this.
+// <memory>, which has those, takes longer to compile than most of what includes this.
 #pragma once
 
 #include <concepts>
@@ -15,14 +15,14 @@ namespace held_detail {
 /// Throws Error{invalid_argument}.
 [[noreturn]] void throw_moved_from(const char* name);
 
-/// How many share an object; the last to leave destroys it.
+/// Counts who shares an object; the last to leave destroys it.
 struct RASTRUM_INSIDE Count;
 [[nodiscard]] Count* first_of(void (*destroy)(const void* object), const void* object);
 void join(Count* count) noexcept;
 void leave(Count* count) noexcept;
 
-/// Points to an object, as a std::shared_ptr does; Releases hands it over, too, as a
-/// std::unique_ptr does.
+/// Whether a P points to an object, as a std::shared_ptr does; Releases: and can hand it over, as a
+/// std::unique_ptr can.
 template <class P, class T>
 concept PointsTo = requires(P& owner) {
   { owner.get() } -> std::convertible_to<T*>;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Images: row 0 at the top. An Image has its rows one after the other, pixel (x, y) at index
-// y · width + x; an ImageView may have them anywhere at equal distances.
+// Images, with row 0 at the top. An Image has its rows one after the other, pixel (x, y) at index y
+// · width + x; the rows of an ImageView may lie anywhere at equal distances.
 #pragma once
 
 #include <concepts>
@@ -16,7 +16,7 @@
 
 namespace RASTRUM_API rastrum {
 
-/// The most pixels across an image and down.
+/// The largest width and height of an image, in pixels.
 inline constexpr int kMaxImageSize = 32768;
 
 /// Straight (not premultiplied) alpha, 8 bit.
@@ -26,22 +26,22 @@ struct Rgba8 {
 };
 static_assert(sizeof(Rgba8) == 4);
 
-/// A borrowed image. Trivially copyable; does not own. `{data, width, height}` is an image whose
-/// rows lie one after the other; code that sets the fields one by one must set the stride as well.
+/// A view of an image in a caller's memory; trivially copyable. `{data, width, height}` has its
+/// rows one after the other; code that sets the fields one by one must set the stride as well.
 template <class T>
 struct ImageView {
   T* data = nullptr;  ///< pixel (0, 0): the left one of the top row
   int width = 0, height = 0;
-  /// Elements from a row to the next one below: the width, or more where a picture is part of a
-  /// wider one, or negative where rows lie from the bottom up (OpenGL's order, BMP): `data` is then
-  /// the row that lies last, {first + (height − 1) · width, width, height, −width}. Every function
-  /// refuses a stride between −width and width.
+  /// Pixels (not bytes) from a row to the next one below: the width; or more if the picture is part
+  /// of a wider one; or negative if rows lie from the bottom up (OpenGL's order, BMP), and then
+  /// `data` is the row that lies last: {first + (height − 1) · width, width, height, −width}. Every
+  /// function refuses a stride between −width and width.
   std::ptrdiff_t stride = width;
 
   [[nodiscard]] RASTRUM_HD bool empty() const { return data == nullptr; }
   [[nodiscard]] RASTRUM_HD T* row(int y) const { return data + y * stride; }
   [[nodiscard]] RASTRUM_HD T& operator()(int x, int y) const { return data[y * stride + x]; }
-  /// To a view that only reads. (A template, because nvcc warns of conversions to the same type.)
+  /// Converts to a view that only reads. (A template: nvcc warns of conversions to the same type.)
   template <std::same_as<const T> U>
   RASTRUM_HD operator ImageView<U>() const requires(!std::is_const_v<T>) {
     return {data, width, height, stride};
@@ -78,7 +78,7 @@ class Image {
   [[nodiscard]] ImageView<const T> view() const {
     return {pixels_.data(), width_, height_, width_};
   }
-  /// Converts to a view; to one that writes, not from a temporary image.
+  /// Converts to a view; a temporary image only to one that reads.
   operator ImageView<T>() & { return view(); }
   operator ImageView<const T>() const { return view(); }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files in and out, chosen by extension. Readers keep the file's order: triangle ids are the order
-// of submission, and nothing is merged or reordered.
+// Reads and writes files; the extension chooses the format. Readers keep the file's order: triangle
+// ids count in it, and nothing is merged or reordered.
 #pragma once
 
 #include <cstddef>
@@ -23,9 +23,9 @@ class AtomicFile;
 
 /// Limits of a reader.
 struct ReadOptions {
-  /// A document may take 64 bytes of memory for each byte of it and of the files that it names, and
-  /// this many on top. Reading throws Error{out_of_memory} before it takes more, so a small file
-  /// cannot take all memory.
+  /// In bytes. A document may take 64 bytes of memory for each byte of it and of the files that it
+  /// names, and this many on top. Reading throws Error{out_of_memory} before it takes more, so a
+  /// small file cannot take all memory.
   std::uint64_t memory_limit = std::uint64_t{1} << 30;
   /// Whether a document may name files outside of its folder; a link counts as its target. Only
   /// regular files are read, no pipes and no devices.
@@ -33,19 +33,19 @@ struct ReadOptions {
 };
 
 /// Reads .obj (with .mtl), .ply, .stl, .off, .gltf, .glb or .npy (by extension, any case). A PLY
-/// file without faces is a cloud of points, or of the lines of its edges; glTF and OBJ files may
-/// have points and lines beside meshes. docs/read_files.md lists what is drawn of each format.
-/// Vertices with non-finite coordinates are kept (the renderer drops and counts their triangles);
-/// degenerate triangles keep their numbers. Normals are the file's or none. Throws Error{not_found
-/// | bad_format | unsupported | io | out_of_memory} naming the file and the place in it; io, too,
-/// where the file becomes shorter meanwhile.
+/// file without faces becomes points, or lines along its edges; glTF and OBJ files may have points
+/// and lines beside meshes. docs/read_files.md lists what is drawn of each format. Vertices with
+/// non-finite coordinates are kept (the renderer drops and counts their triangles); degenerate
+/// triangles keep their numbers. Normals are the file's or none. Throws Error{not_found |
+/// bad_format | unsupported | io | out_of_memory} naming the file and the place in it; io also if
+/// the file becomes shorter meanwhile.
 [[nodiscard]] Scene read_scene(PathView file, const ReadOptions& options = {});
 
-/// The same from memory. `format`: obj, ply, stl, off, gltf or glb, as an extension has it, with or
-/// without its dot. `name` appears in errors, and textures and the like are looked for beside it.
+/// Reads a scene from memory. `format`: obj, ply, stl, off, gltf or glb, with or without a dot.
+/// `name` appears in errors; textures and other files are looked for beside it.
 [[nodiscard]] Scene decode_scene(std::span<const std::byte> bytes, std::string_view format,
                                  PathView name, const ReadOptions& options = {});
-/// The formats of read_scene, without dots.
+/// The extensions that read_scene knows, without dots.
 [[nodiscard]] std::vector<std::string_view> scene_formats();
 
 /// Decodes a PNG, a JPEG or, where the library was built with libwebp, a WebP (by its first bytes),
@@ -54,42 +54,42 @@ struct ReadOptions {
 [[nodiscard]] Image<Rgba8> decode_image(std::span<const std::byte> bytes, const std::string& name,
                                         const ReadOptions& options = {});
 
-/// Linear light of a picture, for an Environment: Radiance's .hdr (without its EXPOSURE), OpenEXR
-/// (R, G and B, or Y), PNG or JPEG as sRGB, by the first bytes. Throws as read_image.
+/// Reads a picture as linear light, for an Environment: Radiance's .hdr (divided by its EXPOSURE),
+/// OpenEXR (R, G and B, or Y), PNG or JPEG as sRGB, by the first bytes. Throws as read_image.
 [[nodiscard]] Image<Vec3> read_light(PathView file, const ReadOptions& options = {});
 [[nodiscard]] Image<Vec3> decode_light(std::span<const std::byte> bytes, const std::string& name,
                                        const ReadOptions& options = {});
 
-/// Writers write to a temporary name beside `file` and rename it, so that a file is whole or
-/// absent. Throws Error{io} naming the file, Error{invalid_argument} for an empty image or rows
-/// that overlap.
+/// All writers write to a temporary name beside `file` and rename it, so that a file is whole or
+/// absent. They throw Error{io} naming the file, and Error{invalid_argument} for an empty image or
+/// rows that overlap.
 /// PNG: `threads` (0: all) compress bands of 128 KiB side by side; the file is the same for every
-/// number. Cost: about 5 ms a megabyte of pixels and thread.
+/// number. Cost: about 5 ms of one core per megabyte of pixels.
 void write_png(PathView file, ImageView<const Rgba8> image, int threads = 1);
-/// float32 RGBA, premultiplied: an RGBA EXR (32 bit), or NPY of shape (H, W, 4).
+/// Writes premultiplied RGBA in float32: an RGBA EXR (32 bit), or NPY of shape (H, W, 4).
 void write_exr(PathView file, ImageView<const Vec4> image);
 void write_npy(PathView file, ImageView<const Vec4> image);
-/// float32 x, y, z: EXR channels X, Y and Z, or NPY of shape (H, W, 3); x, y: NPY (H, W, 2).
+/// Writes x, y, z in float32: EXR channels X, Y and Z, or NPY of shape (H, W, 3); x, y: (H, W, 2).
 void write_exr(PathView file, ImageView<const Vec3> image);
 void write_npy(PathView file, ImageView<const Vec3> image);
 void write_npy(PathView file, ImageView<const Vec2> image);
-/// One channel: EXR channel "Z", or NPY of shape (H, W).
+/// Writes one channel: EXR channel "Z", or NPY of shape (H, W).
 void write_exr(PathView file, ImageView<const float> image);
 void write_npy(PathView file, ImageView<const float> image);
 void write_npy(PathView file, ImageView<const std::int64_t> image);
 void write_npy(PathView file, ImageView<const std::int32_t> image);
 
-/// Binary little-endian PLY with positions (in double where there are wide ones), faces, and the
+/// Writes a binary little-endian PLY: positions (double if there are wide ones), faces, and the
 /// normals, texture coordinates and colours that share the positions' indices (those with indices
-/// of their own are left out), and scalars of vertices and faces as doubles of their names (a blank
+/// of their own are left out). Scalars of vertices and faces become doubles of their names (a blank
 /// in one is written _). Throws Error{invalid_argument} for an index out of range or fewer values
 /// than positions or faces.
 void write_ply(PathView file, const Mesh& mesh);
-/// The same of points: a file without faces.
+/// Writes points: a PLY without faces.
 void write_ply(PathView file, const Points& points);
 
-/// The same into a file that the caller has begun and commits: together with others, or to standard
-/// output.
+/// This and the next do the same into a file that the caller has begun and commits: together with
+/// others, or to standard output.
 void write_png(AtomicFile& out, ImageView<const Rgba8> image, int threads = 1);
 void write_exr(AtomicFile& out, ImageView<const Vec4> image);
 void write_npy(AtomicFile& out, ImageView<const Vec4> image);
@@ -103,17 +103,18 @@ void write_npy(AtomicFile& out, ImageView<const std::int32_t> image);
 void write_ply(AtomicFile& out, const Mesh& mesh);
 void write_ply(AtomicFile& out, const Points& points);
 
-// Whole or absent: a file is written under a temporary name in the same directory and renamed.
-// Several become visible together: all are written before the first is renamed.
+// A file is whole or absent: it is written under a temporary name in the same directory and
+// renamed. Several become visible together: all are written before the first is renamed.
 
 /// Chooses standard output in the place of a file.
 struct StandardOutput {};
 
-/// Without commit() the destructor removes the temporary. A symbolic link is followed, also to a
-/// file that is not there yet. A replaced file passes its mode and, if permitted, its owner to the
-/// new one; a read-only file is not replaced. An existing target that is not a regular file (a
-/// device) is written directly. Pipes and standard output get their bytes at commit(), so that
-/// nothing is sent before all is written. Every member throws Error{io} naming the file.
+/// A file that is seen from commit() on; without it the destructor removes the temporary. A
+/// symbolic link is followed, also to a file that is not there yet. A replaced file passes its mode
+/// and, if permitted, its owner to the new one; a read-only file is not replaced. An existing
+/// target that is not a regular file (a device) is written directly. Pipes and standard output get
+/// their bytes at commit(), so nothing is sent before all is written. Every member throws Error{io}
+/// naming the file.
 class AtomicFile {
  public:
   explicit AtomicFile(PathView file);
@@ -122,14 +123,14 @@ class AtomicFile {
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  /// The open stream, which can seek; check nothing, commit() does.
+  /// The open stream, which can seek. Its errors need no check: commit() finds them.
   [[nodiscard]] std::FILE* stream();
   void write(const void* data, std::size_t size);
   void commit();
-  /// All are finished, then those for pipes sent, then the temporaries renamed: where one of them
-  /// cannot be finished none is seen.
+  /// Finishes all files, sends those for pipes, then renames the temporaries: if one of them cannot
+  /// be finished, none is seen.
   static void commit(std::span<AtomicFile* const> files);
-  /// The error for a failure seen elsewhere; `what` is the reason.
+  /// Throws Error{io} for a failure seen elsewhere; `what` is the reason.
   [[noreturn]] void fail(const char* what) const;
   /// The name as the caller gave it, for messages.
   [[nodiscard]] const std::string& name() const;
@@ -139,16 +140,16 @@ class AtomicFile {
   Owner<Impl> impl_;
 };
 
-/// The file of a picture whose rows come in bands, from the top, and need not be there together:
-/// byte for byte the one of the functions above. Images of `add` hold the next rows of the picture,
-/// all of one kind: Rgba8 for PNG; Vec4, Vec3 or float for EXR and NPY; Vec2, int64 or int32 for
-/// NPY. `threads` as for write_png. All throw Error{io} naming the file, Error{invalid_argument}
-/// for other pixels, more rows or fewer. Memory of a PNG meanwhile: let b be 128 KiB or a row,
-/// whichever is more: b, and 8 b for each thread.
+/// Writes a picture whose rows come in bands, from the top, and need not be there together: byte
+/// for byte the file of the functions above. Each add() has the next rows, all of one kind: Rgba8
+/// for PNG; Vec4, Vec3 or float for EXR and NPY; Vec2, int64 or int32 for NPY. `threads` as for
+/// write_png. All members throw Error{io} naming the file, and Error{invalid_argument} for other
+/// pixels, more rows or fewer. A PNG takes memory meanwhile: b, and 8 b for each thread, with b =
+/// 128 KiB or a row, whichever is more.
 class PictureRows {
  public:
   enum class Format : std::uint8_t { png, exr, npy };
-  /// `out` outlives it; the caller commits it after finish().
+  /// `out` must outlive this; the caller commits it after finish().
   PictureRows(AtomicFile& out, Format format, int width, int height, int threads = 1);
   PictureRows(PictureRows&&) noexcept;
   ~PictureRows();
@@ -159,7 +160,7 @@ class PictureRows {
   void add(ImageView<const float> rows);
   void add(ImageView<const std::int64_t> rows);
   void add(ImageView<const std::int32_t> rows);
-  /// Where all rows have come.
+  /// To be called after the last row.
   void finish();
 
  private:
@@ -181,23 +182,23 @@ void remove_abandoned(PathView folder);
 
 // The text that `rastrum info FILE` prints.
 
-/// A text of several lines: meshes with their vertices and triangles, instances, bounds, materials,
-/// textures, cameras, animations; how many triangles have a vertex that is not finite (the renderer
-/// drops them) or no area; the warnings. O(triangles of all instances). Throws
+/// Describes a scene in several lines: meshes with their vertices and triangles, instances, bounds,
+/// materials, textures, cameras, animations; how many triangles have a vertex that is not finite
+/// (the renderer drops them) or no area; the warnings. O(triangles of all instances). Throws
 /// Error{invalid_argument} for an index out of range.
 [[nodiscard]] std::string describe(const Scene& scene);
 
-// Height maps from files: a grid of heights and how many of its units make one cell of the map.
+// Height maps from files.
 
-/// Row 0 is at the top (north), columns go east.
+/// A grid of heights. Row 0 is at the top (north), columns go east.
 struct HeightGrid {
-  Image<float> heights{};  ///< as the file has them, voids NaN
+  Image<float> heights{};  ///< as the file has them; NaN where it has none
   /// Units of `heights` that are as long as one cell is wide. Multiplying by 1 / units_per_cell
   /// gives the terrain its true proportions (DEM, GeoTIFF), or 16-bit values the range of 8-bit
   /// ones (257), which is that of the classic maps.
   double units_per_cell = 1;
-  /// Whether `units_per_cell` is known: from the file (DEM, GeoTIFF), or because it has 8 bits,
-  /// where a unit has been a cell since Voxel Space. Else it is a guess.
+  /// Whether `units_per_cell` is known: from the file (DEM, GeoTIFF), or because heights have 8
+  /// bits, where a unit has been a cell since Voxel Space. Else it is a guess.
   bool scale_known = false;
 };
 
@@ -207,7 +208,7 @@ struct HeightGrid {
 
 /// Properties of a raw file, which has no header.
 struct RawSize {
-  int width = 0, height = 0;  ///< 0: square
+  int width = 0, height = 0;  ///< width 0: square
   bool big_endian = false;
 };
 
@@ -224,7 +225,7 @@ struct RawSize {
 [[nodiscard]] HeightGrid read_heights(PathView file, RawSize raw = {},
                                       const ReadOptions& options = {});
 
-/// The same from memory, but for GeoTIFF. `format`: an extension, any case, with or without its
+/// Reads heights from memory, but no GeoTIFF. `format`: an extension, any case, with or without its
 /// dot; `name` appears in errors.
 [[nodiscard]] HeightGrid decode_heights(std::span<const std::byte> bytes, std::string_view format,
                                         const std::string& name, RawSize raw = {},

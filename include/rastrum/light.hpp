@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lights of a scene, as values. A frame without any is lit as it always was: by the fixed light of
-// its shader (docs/light_rules.md has the formulas, decision 0057 the reasons).
+// Lights of a scene, as values. A frame without any is lit by the fixed light of its shader
+// (docs/light_rules.md has the formulas, decision 0057 the reasons).
 #pragma once
 
 #include <limits>
@@ -20,20 +20,20 @@ namespace RASTRUM_API rastrum {
 // Lights of the camera (Light::of_camera) use its axes: x to the right, y up, z towards the viewer,
 // from the eye.
 
-/// From everywhere, on every side of a surface alike.
+/// Light from everywhere, on every side of a surface alike.
 struct AmbientLight {};
-/// From all around, by how far a direction leans to `up`: Light::color there, `below` opposite of
-/// it, and linearly between them.
+/// Light from all around: Light::color for a surface that faces `up`, `below` for one that faces
+/// the opposite way, and linear between in the cosine of the angle to `up`.
 struct HemisphereLight {
   Vec3 up{0, 1, 0};
   Vec3 below{};  ///< linear, as Light::color
 };
-/// From so far away that it is parallel.
+/// Parallel light, from very far away.
 struct DirectionalLight {
   Vec3 direction{0, 0, -1};
 };
-/// Intensity at distance d: 1 / d², and with a range max(min(1 − (d / range)⁴, 1), 0) of it, as
-/// glTF's KHR_lights_punctual.
+/// Light from a point, with intensity 1 / d² at distance d; a range multiplies this by max(min(1 −
+/// (d / range)⁴, 1), 0), as glTF's KHR_lights_punctual.
 struct PointLight {
   Vec3d position{};
   float range = std::numeric_limits<float>::infinity();  ///< > 0
@@ -47,42 +47,43 @@ struct SpotLight {
   float inner_rad = 0, outer_rad = std::numbers::pi_v<float> / 4;
 };
 
-/// A picture of all that is around. Matt surfaces gather it; what `material` mirrors comes from it
-/// as well, the wider the rougher. It casts no shadows.
+/// Light from a picture of all that is around. Matt surfaces gather it; `material` mirrors it, too,
+/// the more blurred the rougher a surface is. It casts no shadows.
 struct EnvironmentLight {
   std::optional<Environment> picture;  ///< must be there
-  Vec3 up{0, 1, 0};    ///< where the picture's top row is; what was at −z moves the shortest way
-  float turn_rad = 0;  ///< about `up` before, counter-clockwise seen from there
+  Vec3 up{0, 1, 0};    ///< where the picture's top row is, by the shortest turn from +y
+  float turn_rad = 0;  ///< before that a turn about +y, counter-clockwise seen from there
 };
 
 struct Light {
   std::variant<AmbientLight, HemisphereLight, DirectionalLight, PointLight, SpotLight,
                EnvironmentLight>
       kind = DirectionalLight{};
-  Vec3 color{1, 1, 1};  ///< linear, each ≥ 0
+  Vec3 color{1, 1, 1};  ///< linear, each in [0, 1e12]
   /// How bright it makes a white, matt surface that faces it (a unit away, where it has a
   /// position): glTF's lux or candela divided by π; an environment is multiplied by it. In
   /// [0, 1e12].
   float intensity = 1;
-  bool of_camera = false;  ///< moves with the camera: what is said of places is in its axes
+  bool of_camera = false;  ///< moves with the camera: its vectors are in those axes
 };
 
-/// At most so many a frame.
+/// The most lights of a frame.
 inline constexpr std::size_t kMaxLights = 256;
 
 /// Throws Error{invalid_argument} that names the light by its number and what is out of range.
 void check_lights(std::span<const Light> lights);
 
-/// One that stands in the world, moved: its place and its directions, not its range and brightness.
+/// `light` moved: its position and directions, not its range and brightness. A light of the camera
+/// stays as it is.
 [[nodiscard]] Light placed(const Light& light, const Mat4d& to_world);
 
-/// A lamp at the viewer's forehead: directional, along the camera's axis.
+/// A directional light of the camera, along its axis.
 [[nodiscard]] Light headlight(float intensity = 1);
 
 /// Key, fill, back and head light of the camera, placed and weighed as VTK's vtkLightKit has them:
 /// key 0.75 from 50° above and 10° to the right, fill a third of it from 75° below and 10° to the
-/// left, two back lights at ±110°, 1 / 3.5 of it each, head light a third of it. Their colours are
-/// the kit's warmth 0.6, 0.4, 0.5 and 0.5. With an ambient light of `ambient`.
+/// left, two back lights of 1 / 3.5 of it at ±110°, head light a third of it. Their colours are the
+/// kit's warmth 0.6, 0.4, 0.5 and 0.5. An ambient light of intensity `ambient` is the last.
 [[nodiscard]] std::vector<Light> light_kit(float ambient = 0.05F);
 
 }  // namespace rastrum

@@ -41,10 +41,10 @@ constexpr Mat4Of<T> operator*(const Mat4Of<T>& a, const Mat4Of<T>& b) {
   return r;
 }
 
-// From the 16 numbers that others hold. Vectors are columns here as there: only the order in memory
+// Matrices from the 16 numbers of other programs. Vectors are columns in both; the order in memory
 // differs.
 
-/// Row after row, as C arrays and NumPy have a matrix. `T`: float or double.
+/// From numbers row after row, as in C arrays and NumPy. `T`: float or double.
 template <class T>
 constexpr Mat4d matrix_from_rows(const T* m) {
   Mat4d r;
@@ -52,7 +52,7 @@ constexpr Mat4d matrix_from_rows(const T* m) {
     for (int j = 0; j < 4; ++j) r.m[i][j] = static_cast<double>(m[4 * i + j]);
   return r;
 }
-/// Column after column, as OpenGL, glTF, GLM and Eigen have it.
+/// From numbers column after column, as in OpenGL, glTF, GLM and Eigen.
 template <class T>
 constexpr Mat4d matrix_from_columns(const T* m) {
   Mat4d r;
@@ -61,8 +61,8 @@ constexpr Mat4d matrix_from_columns(const T* m) {
   return r;
 }
 
-/// The inverse; none where a pivot is 0 or not finite. Gauss and Jordan's elimination, the
-/// largest pivot of a column first.
+/// The inverse, by Gauss and Jordan's elimination with the largest pivot of a column first; none if
+/// a pivot is 0 or not finite.
 [[nodiscard]] inline std::optional<Mat4d> inverse(Mat4d a) {
   Mat4d r = Mat4d::identity();
   for (int k = 0; k < 4; ++k) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Triangle meshes: views over a caller's arrays (what is rendered) and the owning form (what
-// readers and procedural shapes return).
+// Triangle meshes: MeshView over a caller's arrays, which is rendered, and Mesh, which owns its
+// arrays and is what readers and procedural shapes return.
 #pragma once
 
 #include <cstddef>
@@ -16,25 +16,26 @@
 
 namespace RASTRUM_API rastrum {
 
-/// Which side of a triangle is its front: where its vertices turn counter-clockwise on the screen,
-/// clockwise, or whichever is seen; then no face is culled.
+/// Which side of a triangle is its front: the one from which its vertices turn counter-clockwise,
+/// or clockwise, or whichever is seen; then no face is culled.
 enum class Winding : std::uint8_t { counter_clockwise, clockwise, either };
 
-/// How the corners of a mesh, one an index, make faces, and faces triangles.
+/// How the corners of a mesh (one for each index) make faces, and faces triangles.
 enum class FaceKind : std::uint8_t {
   triangles,  ///< three corners each
   /// Four corners each: triangles (0, 1, 2) and (0, 2, 3). If one of these turns against the face
-  /// and neither of (0, 1, 3) and (1, 2, 3) does, the latter two.
+  /// and neither of (0, 1, 3) and (1, 2, 3) does, these two.
   quads,
   /// Runs of n corners, each n − 2 triangles: the fan (0, k + 1, k + 2). If a triangle of the fan
   /// turns against the face, because a corner points inwards, the face is cut ear by ear.
   polygons,
-  strips,  ///< runs of corners: (k, k + 1, k + 2), in odd triangles (k + 1, k, k + 2)
+  strips,  ///< runs of corners: triangle k is (k, k + 1, k + 2), or (k + 1, k, k + 2) if odd
 };
 
-/// `offsets`: for polygons and strips, one more than faces: face i has the corners offsets[i] to
-/// offsets[i + 1] (VTK's offsets and connectivity). A face of two corners has no triangle; fewer
-/// are refused, as are offsets beyond the corners. Empty: all corners are one face.
+/// How a mesh's corners make its faces. `offsets`, for polygons and strips, has one more than
+/// faces: face i has the corners offsets[i] to offsets[i + 1] (VTK's offsets and connectivity). A
+/// face of two corners has no triangle; fewer are refused, as are offsets beyond the corners.
+/// Empty: all corners are one face.
 struct FacesView {
   FaceKind kind = FaceKind::triangles;
   IndexView offsets{};
@@ -48,9 +49,9 @@ struct TrianglePlace {
   std::size_t face;
 };
 
-/// Values at the corners of triangles. With `indices`, one a corner, corner c reads
-/// values[indices[c]] (OBJ); without, `values` has one a position (glTF, PLY), a corner, a face or
-/// for all.
+/// Values at the corners of triangles. With `indices`, one for each corner, corner c reads
+/// values[indices[c]] (OBJ). Without, `per` says what each value belongs to: a position (glTF,
+/// PLY), a corner, a face or the mesh.
 template <class T>
 struct AttributeView {
   ArrayView<T> values{};
@@ -59,7 +60,7 @@ struct AttributeView {
 
   bool operator==(const AttributeView&) const = default;
   [[nodiscard]] RASTRUM_HD bool empty() const { return values.empty(); }
-  /// Which of the values corner c of a triangle has; `vertex`: its positions.
+  /// The place in `values` of corner c of a triangle; `vertex`: the positions of its corners.
   [[nodiscard]] RASTRUM_HD std::size_t element(const TrianglePlace& t,
                                                const std::uint32_t (&vertex)[3],
                                                std::size_t c) const {
@@ -71,7 +72,7 @@ struct AttributeView {
                                 std::size_t c) const {
     return values[element(t, vertex, c)];
   }
-  /// The same for all three corners at once, which is faster.
+  /// The values of all three corners at once, which is faster.
   RASTRUM_HD void corners(const TrianglePlace& t, const std::uint32_t (&vertex)[3],
                           T (&out)[3]) const {
     if (indices.empty() && per == Per::vertex && values.is_packed()) {
@@ -91,20 +92,20 @@ class RASTRUM_INSIDE FaceCuts;       // scene/face_cuts.hpp
 /// size; the render checks this. At most 2³² − 1 positions.
 struct MeshView {
   ArrayView<Vec3> positions{};  ///< object space; float64 is transformed in float64
-  IndexView indices{};          ///< one a corner; empty: positions in order
+  IndexView indices{};          ///< one for each corner; empty: positions in order
   /// Need not be of unit length; empty: face normals. A corner whose normal is zero or not finite
   /// has its face's.
   AttributeView<Vec3> normals{};
   AttributeView<Vec2> texcoords{};  ///< (0, 0) is the top left of a texture, as in glTF
   AttributeView<Vec4> colors{};     ///< straight alpha; multiplies the base colour
-  ColorSpace color_space = ColorSpace::display;  ///< that of `colors`
-  IndexView face_materials{};                    ///< one a face; empty: `material` for all
+  ColorSpace color_space = ColorSpace::display;  ///< the meaning of `colors`
+  IndexView face_materials{};                    ///< one for each face; empty: `material`
   std::uint32_t material = 0;                    ///< index into Scene::materials
   FacesView faces{};
   MeshScalarsView scalars{};  ///< numbers that become colours: InstanceView::scalar_mapping
-  /// Set by PreparedMesh (prepared_mesh.hpp): clusters, of which frames leave out the hidden ones.
+  /// Set by PreparedMesh (prepared_mesh.hpp): clusters of triangles. Frames leave out hidden ones.
   const MeshClusters* clusters = nullptr;
-  /// Set while a picture is drawn: the polygons that are no fans.
+  /// Set while a picture is drawn: how polygons that are no fans are cut.
   const FaceCuts* cuts = nullptr;
 
   /// Whether both view the same memory in the same way.
@@ -114,21 +115,21 @@ struct MeshView {
   }
   [[nodiscard]] std::size_t face_count() const;
   [[nodiscard]] std::size_t triangle_count() const;
-  /// The position of a corner.
+  /// The index of a corner's position.
   [[nodiscard]] RASTRUM_HD std::uint32_t vertex(std::size_t corner) const {
     return indices.empty() ? static_cast<std::uint32_t>(corner) : indices[corner];
   }
-  /// The corners of triangle t < triangle_count(). Requires valid faces and indices. O(log faces)
-  /// where there are offsets, else O(1); for a polygon without `cuts` also O(its corners).
+  /// The corners and the face of triangle t < triangle_count(). Requires valid faces and indices.
+  /// O(log faces) with offsets, else O(1); for a polygon without `cuts` also O(its corners).
   [[nodiscard]] RASTRUM_HD TrianglePlace place(std::size_t t) const {
 #if !defined(__CUDA_ARCH__)
     if (faces.kind != FaceKind::triangles) return place_in_face(t);
 #endif
     return {{3 * t, 3 * t + 1, 3 * t + 2}, t};
   }
-  /// The positions of the corners of triangles first to first + n, three each. Requires valid
-  /// faces. O(n + log faces); for polygons without `cuts` also O(the corners of the first and the
-  /// last).
+  /// Writes the indices of the positions of triangles first to first + n, three each. Requires
+  /// valid faces. O(n + log faces); for polygons without `cuts` also O(the corners of the first and
+  /// the last).
   void read_triangles(std::size_t first, std::size_t n, std::uint32_t* vertices) const;
   /// Whether its triangles are a list that a device reads: packed indices, or none, and no faces of
   /// another kind.
@@ -140,15 +141,15 @@ struct MeshView {
   [[nodiscard]] TrianglePlace place_in_face(std::size_t t) const;
 };
 
-/// Throws Error{invalid_argument} that names the first offset that is out of order or range, and
-/// the first of the corners' indices that is no position's. O(offsets + indices).
+/// Throws Error{invalid_argument} that names the first offset that is out of order or range, or the
+/// first corner whose index is no position's. O(offsets + indices).
 void check_indices(const MeshView& mesh);
 
-/// An AttributeView's arrays: with `indices`, one a corner; without, one value a position.
+/// The arrays of an AttributeView; without `indices` there is one value for each position.
 template <class T>
 struct Attribute {
   std::vector<T> values{};
-  std::vector<std::uint32_t> indices{};  ///< empty: the positions' indices
+  std::vector<std::uint32_t> indices{};  ///< empty: as the positions'
 
   [[nodiscard]] bool empty() const { return values.empty(); }
   [[nodiscard]] AttributeView<T> view() const;
@@ -164,7 +165,7 @@ struct Mesh {
   Attribute<Vec4> colors{};
   std::vector<std::uint32_t> face_materials{};
   std::uint32_t material = 0;
-  std::vector<NamedScalars> scalars{};  ///< of which Scene::shown_scalars has one in the view
+  std::vector<NamedScalars> scalars{};  ///< Scene::shown_scalars names the one that is shown
   ColorSpace color_space = ColorSpace::display;
   /// Positions in float64, for files far from 0 (docs/read_files.md); `positions` holds them
   /// rounded. Drawn in place of `positions` unless empty.
@@ -177,36 +178,37 @@ struct Mesh {
 // Vertex normals that leave sharp edges sharp.
 
 /// Normals at the corners of triangles, smooth across the edges whose triangles meet at an angle of
-/// at most `crease_deg`, in [0, 180]: at each point the triangles around it fall into groups that
-/// are joined by such edges, and the corners of a group share the normalized sum of the cross
-/// products of its triangles' edges (area-weighted, as vertex_normals).
+/// at most `crease_deg`, in [0, 180]. At each point the triangles around it fall into groups that
+/// are joined by such edges. The corners of a group share the normalized sum of the cross products
+/// of its triangles' edges (area-weighted, as vertex_normals).
 ///
-/// `indices`: three a triangle; empty: positions in order. Equal positions are one point, so that a
-/// triangle soup has neighbours, too. Where more than two triangles share an edge, each is compared
-/// with the next in their order. Edges of triangles without an area join nothing; the normal of
-/// their corners, and of those that are not finite, is (0, 0, 0).
+/// `indices`: three for each triangle; empty: positions in order. Equal positions are one point, so
+/// a triangle soup has neighbours, too. Where more than two triangles share an edge, each is
+/// compared with the next in their order. Edges of triangles without an area join nothing; the
+/// normal at the corners of such triangles, and of those that are not finite, is (0, 0, 0).
 ///
-/// Returns `values`, one a group, and `indices`, one a corner: `mesh.normals = crease_normals(…)`.
-/// Positions, triangles and their order stay as they are. The same bits on every machine: sums in
-/// the order of triangles in float64, and cosines are compared, which are our own.
-/// Cost: O(triangles · log(triangles at a point)), about 100 bytes a triangle meanwhile; of many
-/// triangles on all threads, in parts.
+/// Returns `values`, one for each group, and `indices`, one for each corner, to be set:
+/// `mesh.normals = crease_normals(…)`. Positions, triangles and their order stay as they are. The
+/// bits are the same on every machine: sums are float64 in the order of triangles, and angles are
+/// compared by cosines, which the library computes itself.
+/// Cost: O(triangles · log(triangles at a point)), about 100 bytes per triangle meanwhile. Many
+/// triangles are shared out to all threads.
 /// Throws Error{invalid_argument} for an index or an angle out of range.
 [[nodiscard]] Attribute<Vec3> crease_normals(const ArrayView<Vec3>& positions,
                                              std::span<const std::uint32_t> indices,
                                              double crease_deg);
 
-// Lines from meshes, to be drawn with Topology::lines (program.hpp): wireframes and
-// normals, as in paper 1 (render_wireframe, render_normals; section C.1.5). Each edge is here once,
-// however many triangles share it.
+// Lines from meshes, to be drawn with Topology::lines (program.hpp): wireframes and normals, as in
+// paper 1 (render_wireframe, render_normals; section C.1.5). Each edge comes once, however many
+// triangles share it.
 
-/// Pairs of position indices: the edges of the triangles, each once, in the order in which
+/// The edges of the triangles, each once, as pairs of position indices, in the order in which
 /// triangles first name them. O(n log n). Indices need not be in range.
 [[nodiscard]] std::vector<std::uint32_t> edge_indices(const MeshView& mesh);
 
-/// Pairs of positions, object space: from each vertex `length` along its unit normal; where normals
-/// have indices of their own, from each corner; where there are none, from the middle of each
-/// triangle along the normal of its face. Normals without a direction are left out. Throws
+/// Lines along the normals, as pairs of positions in object space: from each vertex `length` along
+/// its unit normal; from each corner if normals are not one for each vertex; without normals from
+/// the middle of each triangle along its face's. Normals without a direction are left out. Throws
 /// Error{invalid_argument} for indices out of range.
 [[nodiscard]] std::vector<Vec3> normal_lines(const MeshView& mesh, float length);
 
