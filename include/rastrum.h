@@ -7,7 +7,7 @@
 // Memory. Arrays and targets stay the caller's, and nothing of them is copied: they must be there,
 // unchanged, when a picture is drawn or a camera fitted. Vectors, matrices and texts are copied.
 // Failures. A function that can fail returns a status. If it fails, no handle has changed, and
-// rastrum_error_text says what was wrong. The values of arrays are checked by rastrum_render.
+// rastrum_error_text says what was wrong. The values in arrays are checked when they are used.
 // ABI. From version 1.0 on, within a major version, functions keep their arguments and their
 // meaning, constants their numbers, and rastrum_array its fields. New things are new functions.
 #ifndef RASTRUM_H
@@ -129,7 +129,7 @@ rastrum_status rastrum_instance_set_normals(rastrum_scene* scene, size_t instanc
 /// Colours, RGB or RGBA: display values with straight alpha.
 rastrum_status rastrum_instance_set_colors(rastrum_scene* scene, size_t instance,
                                            rastrum_array colors, int per);
-/// Numbers that a colour map of this scene shows.
+/// Scalars: numbers that a colour map of this scene shows.
 rastrum_status rastrum_instance_set_scalars(rastrum_scene* scene, size_t instance,
                                             rastrum_array scalars, int per, size_t color_map);
 /// One radius for each sphere, or position of cylinders and tubes; sizes of points in px.
@@ -140,13 +140,13 @@ rastrum_status rastrum_instance_set_color(rastrum_scene* scene, size_t instance,
                                           const float rgba[4]);
 /// The opacity, in [0, 1]; it multiplies alpha and the frame's opacity.
 rastrum_status rastrum_instance_set_opacity(rastrum_scene* scene, size_t instance, float opacity);
-/// Whether it is drawn; if not (0), its primitives keep their numbers.
+/// Whether the instance is drawn; with 0 it is not, and its primitives keep their numbers.
 rastrum_status rastrum_instance_set_visible(rastrum_scene* scene, size_t instance, int visible);
-/// The number in the target "instances"; unless it is set, that of the instance.
+/// The instance's value in the target "instances"; unless it is set, its number.
 rastrum_status rastrum_instance_set_id(rastrum_scene* scene, size_t instance, int64_t id);
 
 // Cameras are right-handed; they look along their own -z, +y up. A new one is at (0, 0, 1), looks
-// at the origin and sees 60 degrees. A matrix replaces all else until another function is called.
+// at the origin and sees 60 degrees. A matrix replaces all else until another setter is called.
 
 typedef struct rastrum_camera rastrum_camera;
 rastrum_camera* rastrum_camera_new(void);
@@ -160,11 +160,10 @@ rastrum_status rastrum_camera_set_perspective(rastrum_camera* camera, float fov_
 rastrum_status rastrum_camera_set_orthographic(rastrum_camera* camera, float height);
 /// Distances along the view, near < far. `far_plane` may be infinite with perspective.
 rastrum_status rastrum_camera_set_planes(rastrum_camera* camera, float near_plane, float far_plane);
-/// Moves it and sets planes and height, so that the scene fills W x H pixels; the direction stays.
+/// Moves the camera and sets planes and height, so that the scene fills W x H pixels.
 rastrum_status rastrum_camera_fit(rastrum_camera* camera, const rastrum_scene* scene, int width,
                                   int height);
-/// Sets the matrix from world to clip space, row by row, +y up. `depth`: z / w at near and far
-/// plane.
+/// The matrix from world to clip space, row by row, +y up. `depth`: z / w at near and far plane.
 enum {
   RASTRUM_DEPTH_OPENGL = 0,       ///< -1 and 1
   RASTRUM_DEPTH_ZERO_TO_ONE = 1,  ///< 0 and 1: Direct3D, Vulkan, Metal, WebGPU
@@ -172,9 +171,8 @@ enum {
 };
 rastrum_status rastrum_camera_set_matrix(rastrum_camera* camera, const double world_to_clip[16],
                                          int depth);
-/// OpenCV's camera of a W x H picture. `k`: fx, fy, cx, cy, skew, and u and v of the centre of the
-/// top left pixel (OpenCV: 0; COLMAP: 0.5). `world_to_camera`: (R t; 0 1), row by row, y down, z
-/// ahead.
+/// A W x H picture of OpenCV. `k`: fx, fy, cx, cy, skew, and u and v of the centre of the top left
+/// pixel (OpenCV: 0; COLMAP: 0.5). `world_to_camera`: (R t; 0 1), row by row, y down, z ahead.
 rastrum_status rastrum_camera_set_opencv(rastrum_camera* camera, const double k[6],
                                          const double world_to_camera[16], int width, int height,
                                          double near_plane);
@@ -189,9 +187,10 @@ typedef struct rastrum_frame rastrum_frame;
 rastrum_frame* rastrum_frame_new(int width, int height);
 void rastrum_frame_free(rastrum_frame* frame);
 
-/// "auto", "flat", "depth", "normal", "id", "lambert", "phong", "material", "wireframe".
+/// The shader: "auto", "flat", "depth", "normal", "id", "lambert", "phong", "material" or
+/// "wireframe".
 rastrum_status rastrum_frame_set_shader(rastrum_frame* frame, const char* shader);
-/// Display values, straight alpha; (0, 0, 0, 0) unless it is set.
+/// The background, display values with straight alpha; (0, 0, 0, 0) unless it is set.
 rastrum_status rastrum_frame_set_background(rastrum_frame* frame, const float rgba[4]);
 /// Samples in each pixel: 1, 4, 8 or 16.
 rastrum_status rastrum_frame_set_samples(rastrum_frame* frame, int samples);
@@ -235,7 +234,7 @@ rastrum_status rastrum_frame_digest(const rastrum_frame* frame, const char* targ
 rastrum_status rastrum_frame_set_stopped(rastrum_frame* frame, int stopped);
 
 // Renderers keep threads and memory from picture to picture. Several threads may draw with one;
-// they take turns. Setting an option makes it anew.
+// they take turns. An option that is set begins with new ones.
 
 typedef struct rastrum_renderer rastrum_renderer;
 rastrum_renderer* rastrum_renderer_new(void);
@@ -244,7 +243,7 @@ void rastrum_renderer_free(rastrum_renderer* renderer);
 rastrum_status rastrum_renderer_set_threads(rastrum_renderer* renderer, int threads);
 /// Bytes beyond the caller's arrays and targets; 0: no limit. Beyond it scenes are drawn in parts.
 rastrum_status rastrum_renderer_set_memory_limit(rastrum_renderer* renderer, uint64_t bytes);
-/// "serial", "threads" (as a new one), "cuda", "auto".
+/// The device: "serial", "threads" (as in a new renderer), "cuda" or "auto".
 rastrum_status rastrum_renderer_set_device(rastrum_renderer* renderer, const char* device);
 
 /// Draws the scene into the frame's targets.

@@ -9,7 +9,7 @@
 #define RASTRUM_HD
 #endif
 
-/// Marks such a function that loops over SIMD lanes must inline, whatever their instruction set.
+/// Marks such a function if loops over SIMD lanes must inline it, whatever their instruction set.
 #define RASTRUM_HD_LEAF RASTRUM_HD inline __attribute__((always_inline))
 
 /// A shared library exports what namespaces with RASTRUM_API declare, but not the classes with

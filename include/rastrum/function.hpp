@@ -16,8 +16,8 @@ class FunctionRef;
 template <class Signature>
 class Function;
 
-/// Refers to anything that can be called as R(Args…): a function, a lambda, a std::function. It
-/// must live as long as this, so take this as a parameter and do not keep it. Null by default.
+/// Refers to anything that can be called as R(Args…): a function, a lambda, a std::function. This
+/// must live longer, so take a FunctionRef as a parameter and do not keep it. Null by default.
 template <class R, class... Args>
 class FunctionRef<R(Args...)> {
  public:

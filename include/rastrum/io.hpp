@@ -60,11 +60,11 @@ struct ReadOptions {
 [[nodiscard]] Image<Vec3> decode_light(std::span<const std::byte> bytes, const std::string& name,
                                        const ReadOptions& options = {});
 
-/// All writers write to a temporary name beside `file` and rename it, so that a file is whole or
-/// absent. They throw Error{io} naming the file, and Error{invalid_argument} for an empty image or
-/// rows that overlap.
-/// PNG: `threads` (0: all) compress bands of 128 KiB side by side; the file is the same for every
-/// number. Cost: about 5 ms of one core per megabyte of pixels.
+/// Writes a PNG. `threads` (0: all) compress bands of 128 KiB side by side; the file is the same
+/// for every number. Cost: about 5 ms of one core per megabyte of pixels.
+/// This and the writers below write to a temporary name beside `file` and rename it, so that a file
+/// is whole or absent. They throw Error{io} naming the file, and Error{invalid_argument} for an
+/// empty image or rows that overlap.
 void write_png(PathView file, ImageView<const Rgba8> image, int threads = 1);
 /// Writes premultiplied RGBA in float32: an RGBA EXR (32 bit), or NPY of shape (H, W, 4).
 void write_exr(PathView file, ImageView<const Vec4> image);
@@ -88,8 +88,8 @@ void write_ply(PathView file, const Mesh& mesh);
 /// Writes points: a PLY without faces.
 void write_ply(PathView file, const Points& points);
 
-/// This and the next do the same into a file that the caller has begun and commits: together with
-/// others, or to standard output.
+/// This and the next functions write into a file that the caller has begun and commits: together
+/// with others, or to standard output.
 void write_png(AtomicFile& out, ImageView<const Rgba8> image, int threads = 1);
 void write_exr(AtomicFile& out, ImageView<const Vec4> image);
 void write_npy(AtomicFile& out, ImageView<const Vec4> image);
