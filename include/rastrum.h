@@ -171,8 +171,9 @@ enum {
 };
 rastrum_status rastrum_camera_set_matrix(rastrum_camera* camera, const double world_to_clip[16],
                                          int depth);
-/// A W x H picture of OpenCV. `k`: fx, fy, cx, cy, skew, and u and v of the centre of the top left
-/// pixel (OpenCV: 0; COLMAP: 0.5). `world_to_camera`: (R t; 0 1), row by row, y down, z ahead.
+/// OpenCV's camera for W x H pixels. `k`: fx, fy, cx, cy, skew, and u and v of the centre of the
+/// top left pixel (OpenCV: 0; COLMAP: 0.5). `world_to_camera`: (R t; 0 1), row by row, y down, z
+/// ahead.
 rastrum_status rastrum_camera_set_opencv(rastrum_camera* camera, const double k[6],
                                          const double world_to_camera[16], int width, int height,
                                          double near_plane);
@@ -187,7 +188,7 @@ typedef struct rastrum_frame rastrum_frame;
 rastrum_frame* rastrum_frame_new(int width, int height);
 void rastrum_frame_free(rastrum_frame* frame);
 
-/// The shader: "auto", "flat", "depth", "normal", "id", "lambert", "phong", "material" or
+/// The shader: "auto", "flat", "depth", "normal", "id", "lambert", "phong", "material",
 /// "wireframe".
 rastrum_status rastrum_frame_set_shader(rastrum_frame* frame, const char* shader);
 /// The background, display values with straight alpha; (0, 0, 0, 0) unless it is set.
@@ -234,7 +235,7 @@ rastrum_status rastrum_frame_digest(const rastrum_frame* frame, const char* targ
 rastrum_status rastrum_frame_set_stopped(rastrum_frame* frame, int stopped);
 
 // Renderers keep threads and memory from picture to picture. Several threads may draw with one;
-// they take turns. An option that is set begins with new ones.
+// they take turns. Setting an option makes both anew.
 
 typedef struct rastrum_renderer rastrum_renderer;
 rastrum_renderer* rastrum_renderer_new(void);

@@ -29,8 +29,8 @@ struct ColorMap {
 /// The map of that name: viridis, plasma, inferno, magma, cividis, turbo, gray, hot, bone, jet,
 /// ColorBrewer's Blues, RdBu, Spectral and more, coolwarm, twilight, hsv; for categories tab10,
 /// tab20, Set1, Set2, Dark2, Paired (`discrete`). NAME_r is the same map from high to low. Colours
-/// are the published ones in 8 bits. Throws Error{not_found} for other names, and says the nearest
-/// and all of them.
+/// are the published ones in 8 bits. Throws Error{not_found}, which says the nearest name and lists
+/// them all.
 [[nodiscard]] ColorMap color_map(std::string_view name);
 
 /// The map of that name, or one of listed colours: #RRGGBB or #RRGGBBAA, separated by commas or
@@ -67,7 +67,7 @@ struct ScalarMapping {
   /// A curve through points at rising numbers: linear between them, and constant beyond the first
   /// and the last. It multiplies the alpha of all colours but `nan`.
   std::vector<ScalarOpacity> opacity{};
-  /// Lines are drawn on surfaces where these numbers are, of one width in pixels at any distance.
+  /// Numbers at which lines are drawn on surfaces, of one width in pixels at any distance.
   std::vector<double> isolines{};
   Vec4 isoline_color{0, 0, 0, 1};
   float isoline_px = 1;  ///< in (0, 64]

@@ -39,10 +39,10 @@ struct EyeDome {
   int radius_px = 2;    ///< how far away the neighbours are, 1 to 64
 };
 
-/// Lines where surfaces end, bend or meet another instance.
+/// Lines where surfaces end, bend or meet another instance. The first three say what is a line.
 struct Silhouettes {
-  double depth = 0.01;        ///< larger steps, in parts of the distance, are lines; 0: none
-  double angle_degrees = 35;  ///< normals that differ by more are a line, [0, 180]; 180: none
+  double depth = 0.01;        ///< depth steps above this share of the distance; 0: none
+  double angle_degrees = 35;  ///< normals that differ by more, [0, 180]; 180: none
   bool instances = true;      ///< also where Surface::ids differ
   int width_px = 1;           ///< 1 to 16
 };

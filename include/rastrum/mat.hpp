@@ -41,8 +41,7 @@ constexpr Mat4Of<T> operator*(const Mat4Of<T>& a, const Mat4Of<T>& b) {
   return r;
 }
 
-// Matrices from the 16 numbers of other programs. Vectors are columns in both; the order in memory
-// differs.
+// Matrices from the 16 numbers of other programs. Vectors are columns in both; the order differs.
 
 /// From numbers row after row, as in C arrays and NumPy. `T`: float or double.
 template <class T>
