@@ -79,9 +79,8 @@ enum {
   RASTRUM_PER_MESH = 3  ///< one value for the whole mesh
 };
 
-// Scenes have instances and colour maps, each numbered from 0 in the order in which they are added.
-// The functions that add one give its number in the last argument, which may be null. Indices count
-// from 0.
+// Scenes have instances and colour maps, each numbered from 0 in the order of adding. Functions
+// that add one give its number in the last argument, which may be null. Indices count from 0.
 
 typedef struct rastrum_scene rastrum_scene;
 rastrum_scene* rastrum_scene_new(void);
@@ -171,9 +170,8 @@ enum {
 };
 rastrum_status rastrum_camera_set_matrix(rastrum_camera* camera, const double world_to_clip[16],
                                          int depth);
-/// OpenCV's camera for W x H pixels. `k`: fx, fy, cx, cy, skew, and u and v of the centre of the
-/// top left pixel (OpenCV: 0; COLMAP: 0.5). `world_to_camera`: (R t; 0 1), row by row, y down, z
-/// ahead.
+/// OpenCV's camera for W x H pixels. `k`: fx, fy, cx, cy, skew, u and v of the top left pixel's
+/// centre (OpenCV: 0; COLMAP: 0.5). `world_to_camera`: (R t; 0 1), row by row, y down, z ahead.
 rastrum_status rastrum_camera_set_opencv(rastrum_camera* camera, const double k[6],
                                          const double world_to_camera[16], int width, int height,
                                          double near_plane);
@@ -188,8 +186,7 @@ typedef struct rastrum_frame rastrum_frame;
 rastrum_frame* rastrum_frame_new(int width, int height);
 void rastrum_frame_free(rastrum_frame* frame);
 
-/// The shader: "auto", "flat", "depth", "normal", "id", "lambert", "phong", "material",
-/// "wireframe".
+/// A name: "auto", "flat", "depth", "normal", "id", "lambert", "phong", "material", "wireframe".
 rastrum_status rastrum_frame_set_shader(rastrum_frame* frame, const char* shader);
 /// The background, display values with straight alpha; (0, 0, 0, 0) unless it is set.
 rastrum_status rastrum_frame_set_background(rastrum_frame* frame, const float rgba[4]);

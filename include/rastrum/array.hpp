@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Views of values in a caller's memory, with numbers of any type and any stride. Nothing is copied,
-// so the memory must outlive the view. A view decides once, when it is made, how its values are
-// read: packed float32 and packed uint32 indices in place, all others by functions of their type,
-// in runs.
+// so the memory must outlive the view. A view decides once, when it is made, how to read its
+// values: packed float32 and packed uint32 indices in place, others in runs by functions of their
+// type.
 #pragma once
 
 #include <bit>
@@ -88,8 +88,7 @@ struct Reader {
                       std::size_t n, Wide<T>* out);
 };
 
-/// The reader of values with `channels` numbers of type C; a Vec4 of 3 channels gets 1 as its
-/// fourth.
+/// The reader of values of `channels` numbers of type C. A Vec4 of 3 channels has 1 as its fourth.
 template <class T, class C>
 [[nodiscard]] RASTRUM_API const Reader<T>& reader(int channels) noexcept;
 

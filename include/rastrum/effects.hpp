@@ -100,8 +100,7 @@ class Effects {
   /// Without Surface::normals it finds the faces' normals from the depths of neighbours, which is
   /// cheaper than a frame's own. A pixel without a normal (points and lines in `normals`) keeps its
   /// light. Throws Error{invalid_argument} for images that differ in size, options out of range and
-  /// a camera whose planes of equal depth are not perpendicular to its axis. Cost: pixels ·
-  /// samples.
+  /// a camera whose planes of equal depth are not across its axis. Cost: pixels · samples.
   void ambient_occlusion(const Surface& surface, const Camera& camera,
                          const AmbientOcclusion& options, ImageView<float> factor);
   /// Does ambient_occlusion() and darken() at once, without an image between them, as `--studio`

@@ -76,8 +76,8 @@ struct FitOptions {
 /// are 1 % of r off the nearest and the farthest vertex. The target lies straight ahead, as far as
 /// the box's centre.
 ///
-/// A scene without vertices is a point at the origin. All is computed in float64 and in the order
-/// of vertices, so the bits are the same on every machine. fit_camera (scene.hpp) fits a sphere
+/// A scene without vertices is a point at the origin. All is in float64 and in the order of
+/// vertices, so the bits are the same on every machine. fit_camera (scene.hpp) fits a sphere
 /// instead, for any shape of picture. Cost: a few passes over the vertices, O(vertices +
 /// triangles).
 /// Throws Error{invalid_argument} for a size below 1, a field of view outside of 0 to π, a `fill`
@@ -90,9 +90,8 @@ struct BoundingSphere {
   Vec3d centre;
   double radius = 1;
 };
-/// The sphere around the centre of the box of the vertices in use, as far as the farthest (a radius
-/// of 0 becomes 1). O(vertices + triangles). Throws Error{invalid_argument} for an index out of
-/// range.
+/// The sphere around the centre of the box of the vertices in use, as far as the farthest (0 counts
+/// as 1). O(vertices + triangles). Throws Error{invalid_argument} for an index out of range.
 [[nodiscard]] BoundingSphere bounding_sphere(const SceneView& scene, FitRanks* ranks = nullptr);
 
 /// A near plane that does not cut off the target, for an eye anywhere, even inside the scene: a
@@ -114,8 +113,7 @@ struct View {
 };
 
 /// The side on which the eye stands. With +y up, front is at +z and right at +x. Another `up` turns
-/// these axes by the shortest way from +y; so with +z up (CAD) the front is at −y, and right stays
-/// +x.
+/// these axes by the shortest way from +y: with +z up (CAD) front is at −y, and right stays +x.
 enum class ViewName : std::uint8_t { front, back, left, right, top, bottom, iso };
 /// The names front, back, …, iso, in the order of the enum.
 [[nodiscard]] std::vector<std::string_view> view_names();
