@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Names of files as functions take them. <filesystem>, whose paths they may be, costs more time to
-// compile than what includes this.
+// File names as functions take them. Paths of <filesystem> are taken without including it, because
+// it takes longer to compile than what includes this file.
 #pragma once
 
 #include <concepts>
@@ -11,8 +11,9 @@
 
 namespace RASTRUM_API rastrum {
 
-/// A view of a file's name, made of text (`const char*`, std::string, std::string_view) or of a
-/// std::filesystem::path. It must not outlive that, so take one as a parameter and do not keep it.
+/// A view of a file's name: of text (`const char*`, std::string, std::string_view) or of a
+/// std::filesystem::path. It must not outlive what it views, so take it as a parameter and do not
+/// keep it.
 class PathView {
  public:
   template <class Text>
@@ -24,7 +25,7 @@ class PathView {
   }
   PathView(const Path& path) : text_(path.native()) {}
 
-  /// The name as it was given. No zero need follow.
+  /// The name as it was given; a zero byte need not follow it.
   [[nodiscard]] std::string_view text() const { return text_; }
 
  private:

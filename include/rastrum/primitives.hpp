@@ -11,17 +11,17 @@
 
 namespace RASTRUM_API rastrum {
 
-/// The value is the number of vertices of a primitive.
+/// A kind of primitives; its value is the number of vertices of each.
 enum class Topology : std::uint8_t { points = 1, lines = 2, triangles = 3 };
 
-/// Primitives::flags. Fragments pass a fragment test (alpha mask, discard) before the nearest is
-/// taken; fragments are blended: alpha is the shader's to say.
+/// Values of Primitives::flags. kTested: fragments pass a fragment test (alpha mask, discard)
+/// before the nearest is taken. kTranslucent: fragments are blended, with the shader's alpha.
 inline constexpr std::uint32_t kTested = 1, kTranslucent = 8;
 
 /// How many outputs a program may have beside its colour.
 inline constexpr std::size_t kMaxExtraTargets = 7;
 
-/// Wider lines and larger points are refused.
+/// In px; wider lines and larger points are refused.
 inline constexpr float kMaxLineWidth = 4096, kMaxPointSize = 4096;
 
 /// Points, lines or triangles over vertices that are numbered from 0. Ids count primitives through
@@ -29,16 +29,16 @@ inline constexpr float kMaxLineWidth = 4096, kMaxPointSize = 4096;
 struct Primitives {
   std::size_t vertex_count = 0;
   std::span<const std::uint32_t> indices{};  ///< empty: vertices in order
-  std::uint64_t primitive_count = 0;         ///< at most those that the indices or vertices make up
+  std::uint64_t primitive_count = 0;         ///< at most as many as the indices or vertices make
   Topology topology = Topology::triangles;
   std::uint32_t flags = 0;
   Cull cull = Cull::none;  ///< which faces of triangles are left out
   Winding winding = Winding::counter_clockwise;
   float line_width = 1;  ///< px across the minor axis, rounded to a whole number of at least 1
-  float point_size = 1;  ///< px, in n.8; less than 1 counts as 1
-  /// Added to the depth of every fragment before it is cut to [0, 1], as GL's polygon offset, but
-  /// for all topologies and in units of reversed depth (more is nearer): depth_bias +
-  /// depth_bias_slope · max(|zx|, |zy|), the change of depth per px.
+  float point_size = 1;  ///< px, rounded to 1/256; less than 1 counts as 1
+  /// depth_bias + depth_bias_slope · max(|zx|, |zy|) is added to the depth of every fragment before
+  /// it is cut to [0, 1]; zx and zy are the change of depth per px. This is GL's polygon offset,
+  /// but for all topologies and in units of reversed depth (more is nearer).
   float depth_bias = 0, depth_bias_slope = 0;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The programmable pipeline: a vertex function, a fragment function and, if wanted, a discard
-// function of the caller's own, over a varying struct of the caller's own.
+// The programmable pipeline: the caller's own vertex function, fragment function and, if wanted,
+// discard function, with a varying struct of the caller's own.
 //
 //   struct Varying { Vec3 color; };  // with V + V and V * float
 //   Program program(
@@ -34,48 +34,48 @@ namespace raster {
 struct RASTRUM_INSIDE ProgramHooks;
 }
 
-/// The weight of each corner's values in a fragment; a line has two, a point one.
+/// The weight of each corner's values in a fragment; a line has two corners, a point one.
 struct Weights {
-  double b[3];      ///< normalized, they add up to 1
-  double db_dx[3];  ///< change per px of the normalized weights
+  double b[3];      ///< they add up to 1
+  double db_dx[3];  ///< change of each per px
   double db_dy[3];
 };
 
 /// The fragment that a fragment function gets.
 struct Fragment {
   int x = 0, y = 0;
-  Vec2 from_centre{0, 0};      ///< where in the pixel it is shaded, px
+  Vec2 from_centre{0, 0};      ///< where it is shaded, px from the pixel's centre
   float depth = 0;             ///< reversed
-  std::uint64_t id = 0;        ///< primitive in submission order
-  std::uint64_t triangle = 0;  ///< or line or point, within its draw
-  std::size_t draw = 0;        ///< among the frame's draws
+  std::uint64_t id = 0;        ///< number of its primitive in order of submission
+  std::uint64_t triangle = 0;  ///< number of its triangle, line or point within the draw
+  std::size_t draw = 0;        ///< index among the frame's draws
   bool front = true;  ///< is seen from its front (Primitives::winding; `either`: counter-clockwise)
-  std::uint32_t vertex[3] = {};  ///< as many as the topology has
+  std::uint32_t vertex[3] = {};  ///< indices, as many as the topology has
   Weights weights;
-  Vec2 point;  ///< of a point: where in its square, (0, 0) at the top left to (1, 1)
+  Vec2 point;  ///< for points: place in the square, (0, 0) at the top left to (1, 1)
 };
 
-/// A type that can be interpolated: Σ varyingᵢ · weightᵢ, in the caller's own arithmetic.
+/// A type that can be interpolated: Σ varyingᵢ · weightᵢ, in its own arithmetic.
 template <class V>
 concept Varying = std::copyable<V> && requires(const V& v, float weight) {
   { v + v } -> std::convertible_to<V>;
   { v* weight } -> std::convertible_to<V>;
 };
 
-/// `V`: a Varying, which Program sees to.
+/// The result of a vertex function. `V` must be a Varying, which Program checks.
 template <class V>
 struct VertexOutput {
-  Vec4 clip{};  ///< reversed depth: z = w at the near plane, 0 at the far one (world_to_clip's)
+  Vec4 clip{};  ///< reversed depth as by world_to_clip: z = w at the near plane, 0 at the far one
   V varying;
 };
 
-/// Discards nothing.
+/// The discard function of programs that discard nothing.
 struct KeepAll {};
 
 class ProgramStages;
 
-/// Primitives whose vertices and colours come from a program, which must outlive the frame. If its
-/// functions throw, the first exception stops the frame, and the call that draws it throws that.
+/// Primitives whose vertices and colours a program makes; it must outlive the frame. The first
+/// exception of its functions stops the frame, and the call that draws it throws that.
 struct ProgramDraw : Primitives {
   const ProgramStages* program = nullptr;  ///< must be set
 };
@@ -83,10 +83,10 @@ struct ProgramDraw : Primitives {
 /// Fragments of one primitive in an 8 × 8 block.
 struct FragmentBatch {
   Topology topology = Topology::triangles;
-  std::span<const Fragment> fragments;  ///< 1 to 64, of one `vertex`
+  std::span<const Fragment> fragments;  ///< 1 to 64, all with the same `vertex`
 };
 
-/// A program as the library calls it: a block a call. The library finds the fragments.
+/// A program as the library calls it: once for each block of fragments that the library has found.
 class ProgramStages {
  public:
   ProgramStages(const ProgramStages&) = delete;  // draws point to it
@@ -99,21 +99,22 @@ class ProgramStages {
  private:
   friend struct raster::ProgramHooks;
 
-  // An exception of these stops the frame, which throws it.
-  /// Positions of vertices [first, first + count).
+  // An exception of these functions stops the frame, which throws it.
+  /// Writes the clip positions of vertices [first, first + count).
   virtual void positions(std::uint32_t first, std::size_t count, Vec4* clip) const = 0;
-  /// The outputs of each fragment: its colour into colors, the others into `extra`, which has one
-  /// array for each that is wanted; null: none.
+  /// Writes the outputs of each fragment: its colour into `colors`, the others into `extra`, one
+  /// array for each; `extra` is null if none is wanted.
   virtual void shade(const FragmentBatch& batch, Vec4* colors, Vec4 (*extra)[64]) const = 0;
-  /// A bit for each fragment that is a hole.
+  /// A bit for each fragment, the lowest for the first: 1 if it is discarded.
   [[nodiscard]] virtual std::uint64_t discarded(const FragmentBatch& batch) const = 0;
 
   Owner<raster::ProgramHooks> hooks_;
 };
 
-/// Vertex: VertexOutput<V>(std::uint32_t index). Shade: Vec4(const V&, const Fragment&), the
-/// premultiplied display value, or a std::array or tuple of Vec4, of which those after the first go
-/// to Targets::extra. Discard: bool(const V&, const Fragment&), true for a hole.
+/// A program of three functions. Vertex: VertexOutput<V>(std::uint32_t index). Shade: Vec4(const
+/// V&, const Fragment&), the premultiplied display value, or a std::array or tuple of Vec4, of
+/// which those after the first go to Targets::extra. Discard: bool(const V&, const Fragment&), true
+/// for a fragment to discard.
 template <class Vertex, class Shade, class Discard = KeepAll>
 class Program final : public ProgramStages {
  public:
@@ -128,7 +129,7 @@ class Program final : public ProgramStages {
         shade_(std::move(shade)),
         discard_(std::move(discard)) {}
 
-  /// `indices`: 3 per triangle, 2 per line or 1 per point, which must outlive the frame; empty:
+  /// `indices`: 3 per triangle, 2 per line or 1 per point; they must outlive the frame. Empty:
   /// vertices in order.
   [[nodiscard]] ProgramDraw draw(std::size_t vertex_count,
                                  std::span<const std::uint32_t> indices = {},
@@ -187,7 +188,7 @@ class Program final : public ProgramStages {
     return holes;
   }
 
-  /// Calls f(number, varying, fragment).
+  /// Calls f(number, varying, fragment) for each fragment.
   template <class F>
   void for_each(const FragmentBatch& batch, F&& f) const {
     const auto varying = [&](int corner) {

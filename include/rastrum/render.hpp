@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The façade: scene + camera + options → image. Draws of functions of your own: program.hpp.
+// Renders a scene: scene + camera + options → image. Renderer::draw takes functions of your own
+// (program.hpp).
 #pragma once
 
 #include <cstdint>
@@ -22,28 +23,28 @@
 
 namespace RASTRUM_API rastrum {
 
-/// The names as on the command line, in the order of the enum.
+/// The names of the shaders, as on the command line, in the order of the enum.
 [[nodiscard]] std::vector<std::string_view> shader_names();
-/// Throws Error{invalid_argument} that lists the names.
+/// Throws Error{invalid_argument}, which lists the names, for any other name.
 [[nodiscard]] Shader shader_from_name(std::string_view name);
-/// Throws Error{invalid_argument} for a value that is none.
+/// Throws Error{invalid_argument} for a value that is no Shader.
 [[nodiscard]] std::string_view name(Shader shader);
-/// The shader that draws `scene`: `shader`, or the one that `automatic` takes.
+/// The shader that draws `scene`: `shader` itself, or the one that `automatic` takes.
 [[nodiscard]] Shader shader_for(Shader shader, const SceneView& scene);
-/// The faces of an instance that `shader` leaves out, whatever FrameOptions::cull says: with
-/// `material` the back faces of a single-sided material, as in glTF. Meshes with a material for
-/// each face come from formats without single-sided materials.
+/// The faces of an instance that `shader` leaves out, whatever FrameOptions::cull says. With
+/// `material` these are the back faces of a single-sided material, as in glTF. Meshes with a
+/// material for each face lose none, because they come from formats without single-sided materials.
 [[nodiscard]] Cull material_cull(const InstanceView& instance, std::span<const Material> materials,
                                  Shader shader);
-/// `cull` for an instance in terms of the screen, where a counter-clockwise triangle is a front: it
-/// follows the instance's winding, which a mirroring transform turns.
+/// `cull` in terms of the screen, where a counter-clockwise triangle is a front. It follows the
+/// instance's winding, which a mirroring transform reverses.
 [[nodiscard]] Cull cull_on_screen(const InstanceView& instance, Cull cull);
 
 /// Options of a renderer, which hold for all its frames.
 struct RendererOptions {
-  std::uint64_t memory_limit = 0;  ///< bytes of scratch beyond the mesh and the images; 0: none
-  /// options() of a Renderer has what `automatic` took. With a GPU there, each frame that the
-  /// threads are expected to draw sooner is left to them: FrameStats::device_why has the figures.
+  std::uint64_t memory_limit = 0;  ///< bytes of scratch beside scene and images; 0: no limit
+  /// Renderer::options() has what `automatic` took. If that is a GPU, each frame that the threads
+  /// are expected to draw sooner is left to them; FrameStats::device_why has the figures.
   Device device = Device::threads;
   int threads = 0;           ///< 0: all
   std::optional<Isa> isa{};  ///< none: the best this machine has
@@ -55,26 +56,26 @@ struct RendererOptions {
 struct FrameOptions {
   int width = 1280, height = 720;
   Shader shader = Shader::automatic;  ///< FrameStats::shader says what was taken
-  /// none: all faces, but with Shader::material the back of single-sided materials is left out.
+  /// `none` draws all faces, but Shader::material leaves out the back of single-sided materials.
   Cull cull = Cull::none;
   Vec4 background{0, 0, 0, 0};  ///< display values, straight alpha
-  /// Targets::view_depth and Targets::distance where nothing is; sensors have 0.
+  /// The value of Targets::view_depth and Targets::distance where nothing is; sensors have 0.
   float no_distance = std::numeric_limits<float>::infinity();
-  /// The opacity of every surface, in [0, 1]: opaque materials get it as their alpha, masked ones
-  /// where they are not cut out, and with AlphaMode::blend (or vertex alpha without any material)
+  /// The opacity of every surface, in [0, 1]. Opaque materials, and masked ones where they are not
+  /// cut out, get it as their alpha. With AlphaMode::blend (or vertex alpha without any material)
   /// it multiplies alpha.
   float opacity = 1;
   TransparencyOptions transparency{};
-  int samples = 1;  ///< a pixel: 1, 4, 8 or 16, at D3D11's standard positions
-  /// In the world, at most kMaxClipPlanes. Only places that all of them keep are drawn and hide
-  /// what lies behind. This is decided at each pixel (for a triangle once a pixel where there are
-  /// several samples) in float64 from the triangle that is drawn; sections stay open.
+  int samples = 1;  ///< per pixel: 1, 4, 8 or 16, at D3D11's standard positions
+  /// Planes in the world, at most kMaxClipPlanes. Only places that all of them keep are drawn and
+  /// hide what lies behind. This is decided at each pixel, in float64, from the triangle that is
+  /// drawn (once a pixel for a triangle, also with several samples). Sections stay open.
   std::vector<ClipPlane> clip_planes{};
-  /// The lights for `lambert`, `phong` and `material`; empty: the fixed light of each. The CPU
-  /// draws frames with lights, not a device.
+  /// The lights for `lambert`, `phong` and `material`; empty: the fixed light of each. Frames with
+  /// lights are drawn by the CPU, not by a device.
   std::vector<Light> lights{};
   /// Whether opaque surfaces cast shadows of the directional `lights`, and of the spots that reach
-  /// at most 84.8° from their axis. Translucent surfaces cast none; the fixed light has none.
+  /// at most 84.8° from their axis. Translucent surfaces cast none; the fixed light makes none.
   bool shadows = false;
   /// The most texels across a shadow map, 64 to 8192; 0: about three times the pixels across the
   /// frame, 256 to 2048, or to 1024 where a light has several maps (docs/light_rules.md).
@@ -82,73 +83,75 @@ struct FrameOptions {
   /// Shadows end at this distance from the eye, along the view axis (with a parallel projection,
   /// from its near plane); 0: as far as the picture sees. Less makes near shadows finer.
   double shadow_distance = 0;
-  /// The environments among `lights`, which must have one, replace `background`: they are seen
-  /// where nothing is and through translucent surfaces; with `tone`, blended as display values. Not
+  /// The environments among `lights`, which must have one, replace `background`. They are seen
+  /// where nothing is and through translucent surfaces, with `tone` blended as display values. Not
   /// for pictures that are drawn over others.
   bool environment_behind = false;
   /// How the linear light of Shader::material becomes `color8` and `color`; `linear` is not mapped.
-  /// The mean of several samples or layers is mapped.
+  /// With several samples or layers their mean is mapped.
   ToneMapping tone{};
 };
 
 /// Throws Error{invalid_argument} for a number or an enum's value out of range, a background that
-/// is not finite and a clip plane without a direction. Each frame begins with this check.
+/// is not finite or a clip plane without a direction. Each frame begins with this check.
 void check(const FrameOptions& options);
 
 struct ProgramDraw;                    // program.hpp
 struct RASTRUM_INSIDE RendererAccess;  // render/access.hpp: renderers that draw in another way
 
-/// Renders frames, each with options of its own; keeps threads and scratch between them.
+/// Renders frames, each with its own options; keeps threads and scratch between them.
 ///
-/// Threads: several may call its functions at once; each call is a frame, and they take turns (a
-/// renderer for each thread draws them at the same time). A caller's own vertex, shading or test
-/// function may not call the renderer that calls it: that throws Error{invalid_argument}. The
-/// caller keeps all that a frame reads and fills unchanged meanwhile.
+/// Threads: several threads may call its functions at once. Each call is a frame, and frames take
+/// turns; with a renderer for each thread they are drawn at the same time. A caller's own vertex,
+/// shading or test function may not call the renderer that calls it: that throws
+/// Error{invalid_argument}. Until the frame ends, the caller leaves unchanged all that it reads and
+/// fills.
 ///
-/// Stopping: once any thread requests a stop of `stop`, the frame throws Stopped
-/// (stop.hpp) after a bounded amount of work; a frame that waits for its turn throws when that
-/// comes. Its targets then hold parts of the picture; the renderer remains usable.
+/// Stopping: once any thread requests a stop of `stop`, the frame throws Stopped (stop.hpp) after a
+/// bounded amount of work. A frame that waits for its turn throws when that comes. The targets then
+/// hold parts of the picture; the renderer remains usable.
 class Renderer {
  public:
-  /// Throws Error{invalid_argument} for a number out of range, Error{no_device}.
+  /// Throws Error{invalid_argument} for a number out of range, Error{no_device} for a device that
+  /// is not there.
   explicit Renderer(RendererOptions options = {});
   ~Renderer();
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
   /// Draws `scene` seen by `camera` into `targets`. Translucent surfaces (FrameOptions::opacity,
-  /// AlphaMode::blend, vertex alpha) are blended unless transparency is `none`; ids, depth and keys
+  /// AlphaMode::blend, vertex alpha) are blended unless transparency is `none`. Ids, depth and keys
   /// are those of the nearest surface, whatever its alpha. Meshes without normals are shaded with
-  /// face normals (see vertex_normals for smooth ones). Cost: O(vertices + triangles + covered
-  /// samples). Throws Error{invalid_argument} as check(), or naming an instance whose index is out
-  /// of range, or a target of another size or whose rows overlap, Error{out_of_memory} with what
-  /// was asked for, Stopped (above).
+  /// face normals (vertex_normals makes smooth ones). Cost: O(vertices + triangles + covered
+  /// samples). Throws Error{invalid_argument} as check(), for an instance with an index out of
+  /// range, which it names, and for a target of another size or with rows that overlap;
+  /// Error{out_of_memory} with what was asked for; Stopped (above).
   FrameStats render(const SceneView& scene, const Camera& camera, const FrameOptions& frame,
                     const Targets& targets, const Pass& pass = {}, StopToken stop = {});
 
-  /// The same in one pass where the scene's arrays (positions, indices, normals, colours) and the
-  /// targets are memory of the device that draws: with `cuda` CUDA's, of which nothing is copied,
-  /// else the host's, as always. The frame is drawn on a stream of its own, after all work that was
-  /// given to the stream `after` before the call: those of CUDA that write the arrays or read the
-  /// targets. Without one such work must be complete before the call. When it returns the targets
-  /// are complete. For scenes without materials, opaque or translucent (exact, unsorted), by a
-  /// shader of the device, into color8, color, depth, ids and keys; throws Error{unsupported} for
-  /// what else is asked for.
+  /// As render in one pass, for arrays of the scene (positions, indices, normals, colours) and
+  /// targets that are memory of the device that draws: CUDA's with `cuda`, of which nothing is
+  /// copied; otherwise the host's, as always. The frame has a stream of its own. It comes after all
+  /// work that was given to the stream `after` before the call: CUDA work that writes the arrays or
+  /// reads the targets. Without `after` such work must be complete before the call. The targets are
+  /// complete when the call returns. The scene has no materials and is opaque or translucent
+  /// (exact, unsorted); a shader of the device draws it into color8, color, depth, ids and keys.
+  /// Throws Error{unsupported} for all else.
   FrameStats render_in_place(const SceneView& scene, const Camera& camera,
                              const FrameOptions& frame, const Targets& targets, StopToken stop = {},
                              std::optional<DeviceStream> after = {});
 
-  /// The outputs of a frame at pixel (x, y), without drawing all of it, in the same bits as the
-  /// targets; none where nothing is. Cost: O(vertices + triangles), and the pixels of one bin.
-  /// Throws as render(), and Error{invalid_argument} for a pixel outside of the frame.
+  /// The outputs of a frame at pixel (x, y), in the same bits as the targets, without drawing all
+  /// of it; none where nothing is. Cost: O(vertices + triangles), and the pixels of one bin. Throws
+  /// as render(), and Error{invalid_argument} for a pixel outside the frame.
   [[nodiscard]] std::optional<Pick> pick(const SceneView& scene, const Camera& camera,
                                          const FrameOptions& frame, int x, int y,
                                          StopToken stop = {});
 
-  /// The programmable form: draws with vertex, shading and test functions of a caller's own
-  /// (program.hpp), of one program or several, with layers, samples and extra targets too. Draws
-  /// whose flags have kTranslucent are blended by the alpha that the functions return; of
-  /// `frame` the shader and the opacity are not used. Outputs that a draw's program does not have
+  /// The programmable form: draws with the caller's own vertex, shading and test functions
+  /// (program.hpp), of one program or several, also with layers, samples and extra targets. Draws
+  /// with kTranslucent among their flags are blended by the alpha that the functions return. The
+  /// shader and the opacity of `frame` are not used. Outputs that a draw's program does not have
   /// are 0. Throws as render(), naming the draw.
   FrameStats draw(std::span<const ProgramDraw> draws, const FrameOptions& frame,
                   const Targets& targets, const Pass& pass = {}, StopToken stop = {});
@@ -162,7 +165,7 @@ class Renderer {
   Held<Owner<Impl>> impl_;
 };
 
-/// One frame; the short way.
+/// The short way: draws one frame and returns its colours, Targets::color8.
 [[nodiscard]] Image<Rgba8> render(const SceneView& scene, const Camera& camera,
                                   const FrameOptions& frame, const RendererOptions& options = {});
 
