@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A city whose coordinates are UTM's, millions of metres from their origin: float64 positions are
-// transformed in float64, so its edges are straight. The same rounded to float32, where neighbours
-// are half a metre apart, is the second picture.
+// A city in UTM coordinates, millions of metres from their origin. Its float64 positions are
+// transformed in float64, so its edges are straight. The second picture shows it rounded to
+// float32, where neighbouring numbers are half a metre apart.
 #include <cmath>
 #include <cstdint>
 #include <vector>

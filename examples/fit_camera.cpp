@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Places the default camera before an array of triangles that the program owns, and finds where a
-// point of the world falls in the picture: what an overlay of labels needs.
+// Places the default camera before an array of triangles that the program owns. It also finds where
+// a point of the world falls in the picture, which an overlay of labels needs.
 #include <cstdio>
 #include <vector>
 

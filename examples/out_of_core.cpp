@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Draws a mesh file that does not fit into memory, within the memory that it may take: the picture
-// is that of the whole file, bit for bit. Its rows are written as they come.
+// Draws a mesh file that does not fit into memory, within a limit of memory. The picture is that of
+// the whole file, bit for bit. Its rows are written as they come.
 #include <cstdint>
 #include <cstdio>
 

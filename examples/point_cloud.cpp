@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A cloud of points: of a PLY file without faces, or of hills that a scanner flew over, lit by
-// normals, with its path as a line.
+// A cloud of points: of a PLY file without faces, or of hills that a scanner flew over. The hills
+// have normals and are lit; the scanner's path is a line.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -17,7 +17,7 @@ float height(float x, float z) {
   return 0.55F * std::sin(x) * std::cos(0.8F * z) + 0.1F * std::sin(2.7F * x + 1.9F * z);
 }
 
-/// Denser along the scanner's path, as scans are.
+/// Points are denser along the scanner's path, as in scans.
 rastrum::Scene scan() {
   rastrum::Points points;
   std::mt19937 random(1);

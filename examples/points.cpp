@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Points of two sizes: a Fibonacci sphere in squares, its equator in larger points that a discard
-// makes round.
+// Points of two sizes: a Fibonacci sphere in squares, and its equator in larger points that a
+// discard function makes round.
 #include <cmath>
 #include <cstdio>
 #include <vector>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Parts that lie on several ranks, here threads of one process, each with arms of a galaxy in
-// memory of its own. All draw one picture, which has the same bits for any number of ranks.
+// Draws one picture of parts that lie on several ranks, here threads of one process, each with arms
+// of a galaxy in memory of its own. The picture has the same bits for any number of ranks.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A robot's camera in a loop: depth in metres and a mask of instances, from OpenCV's K and a pose,
-// of a pot and a ball on waves. Renderer, images and views stay; the numbers in the arrays change.
+// A robot's camera in a loop sees a pot and a ball on waves: depth in metres and a mask of
+// instances, from OpenCV's K and a pose. Renderer, images and views stay; the numbers in the arrays
+// change.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A server of pictures: four threads take requests from a queue. They share the scene, which nobody
-// changes, and each has a renderer of its own. The end of the server stops the frames in work.
+// changes, and each has a renderer of its own. When the server ends, it stops the frames in work.
 #include <cmath>
 #include <condition_variable>
 #include <deque>
@@ -17,7 +17,7 @@
 #include <rastrum/shapes.hpp>
 
 using Picture = rastrum::Image<rastrum::Rgba8>;
-/// Its future has the picture or an Error: a Stopped where the server has ended meanwhile.
+/// The future has the picture or an Error; that is Stopped if the server has ended meanwhile.
 using Request = std::packaged_task<Picture(rastrum::Renderer&, std::stop_token)>;
 
 int main() {

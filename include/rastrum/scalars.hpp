@@ -50,16 +50,16 @@ class ScalarView {
     v.type_ = type_of<C>();
     return v;
   }
-  /// Numbers in a buffer. Throws Error{invalid_argument} where one of them reaches beyond it, or
-  /// the layout is not of one number a value.
+  /// Views numbers in a buffer. Throws Error{invalid_argument} if one of them reaches beyond it, or
+  /// the layout has more than one number a value.
   [[nodiscard]] static ScalarView in(std::span<const std::byte> buffer, const ArrayLayout& layout);
 
   [[nodiscard]] RASTRUM_HD std::size_t size() const { return size_; }
   [[nodiscard]] RASTRUM_HD bool empty() const { return size_ == 0; }
-  /// Number i < size().
+  /// The number at index i < size().
   [[nodiscard]] double operator[](std::size_t i) const;
 
-  /// All that it views, in memory.
+  /// The memory that it views.
   [[nodiscard]] std::span<const std::byte> reach() const {
     return array_detail::reach(data_, size_, stride_, 1);
   }
@@ -96,7 +96,8 @@ struct MeshScalarsView {
   [[nodiscard]] RASTRUM_HD bool empty() const { return values.empty(); }
 };
 
-/// Numbers that a geometry owns; for other geometries than meshes one a position, sphere or disc.
+/// Numbers that a geometry owns. Other geometries than meshes have one for each position, sphere or
+/// disc.
 struct NamedScalars {
   std::string name{};
   std::vector<double> values{};

@@ -30,8 +30,8 @@ enum class Wrap : std::uint8_t { repeat, mirrored_repeat, clamp_to_edge };
 enum class TextureFilter : std::uint8_t { nearest, linear };  ///< linear minifies trilinearly
 enum class AlphaMode : std::uint8_t { opaque, mask, blend };
 
-/// A decoded picture as its file has it: 8 bit, straight alpha, row 0 at the top. Whether it holds
-/// sRGB (base colour, emissive) or linear data (the others) is the use's business.
+/// A decoded picture as its file has it: 8 bit, straight alpha, row 0 at the top. Its use says
+/// whether it holds sRGB (base colour, emissive) or linear data (the others).
 struct Texture {
   std::string name{};
   Image<Rgba8> image{};
@@ -42,7 +42,7 @@ struct Texture {
 
 inline constexpr std::int32_t kNoTexture = -1;
 
-/// Factors are linear. A texture index refers to Scene::textures.
+/// A surface's look. Factors are linear light. A texture is an index into Scene::textures.
 struct Material {
   std::string name{};
   Vec4 base_color{1, 1, 1, 1};
@@ -72,15 +72,16 @@ struct ClipPlane {
   Vec3d normal{};
   double offset = 0;
 };
-/// So many a frame, and so many an instance.
+/// The most clip planes of a frame, and of an instance.
 inline constexpr std::size_t kMaxClipPlanes = 8;
 
 /// Any geometry over the caller's arrays.
 using GeometryView =
     std::variant<MeshView, PointsView, LinesView, SpheresView, CylindersView, TubesView, DiscsView>;
 
-/// A view that lies elsewhere. Its owner keeps it there, and a GeometryView of one kind, while this
-/// is in use; any number of instances may refer to it. A temporary does not compile.
+/// Refers to a view that lies elsewhere. Its owner keeps the view there, and a GeometryView of one
+/// kind, while this is in use. Any number of instances may refer to one view. A temporary does not
+/// compile.
 class GeometryRef {
   using Pointer =
       std::variant<const MeshView*, const PointsView*, const LinesView*, const SpheresView*,
@@ -90,7 +91,7 @@ class GeometryRef {
   static constexpr MeshView kNothing{};
 
  public:
-  GeometryRef() = default;  ///< of a mesh without triangles
+  GeometryRef() = default;  ///< refers to a mesh without triangles
   template <class View>
   requires is_kind<View> GeometryRef(const View& view) : view_(&view) {}
   GeometryRef(const GeometryView& view)
@@ -98,18 +99,18 @@ class GeometryRef {
   template <class View>
   GeometryRef(const View&& temporary) = delete;
 
-  /// Null where it is of another kind.
+  /// The view; null if it is of another kind.
   template <class View>
   [[nodiscard]] const View* get_if() const {
     const auto* const view = std::get_if<const View*>(&view_);
     return view != nullptr ? *view : nullptr;
   }
-  /// f(view), as std::visit of a GeometryView.
+  /// Calls f(view), as std::visit of a GeometryView does.
   template <class F>
   decltype(auto) visit(F&& f) const {
     return std::visit([&](const auto* view) -> decltype(auto) { return f(*view); }, view_);
   }
-  /// Whether both refer to one view; equal ones that lie apart are not the same.
+  /// Whether both refer to one view; equal views that lie apart are not the same.
   [[nodiscard]] bool operator==(const GeometryRef&) const = default;
 
  private:
@@ -141,16 +142,16 @@ struct InstanceView {
   Winding winding = Winding::counter_clockwise;
   /// The number of the instance in Targets::instances; none: its place in the scene.
   std::optional<std::int64_t> id{};
-  /// In object space, at most kMaxClipPlanes: only the part of this instance that all of them keep
-  /// is seen. FrameOptions::clip_planes says more.
+  /// Planes in object space, at most kMaxClipPlanes: only the part of this instance that all of
+  /// them keep is seen. FrameOptions::clip_planes says more.
   std::span<const ClipPlane> clip_planes{};
-  /// One number for the whole instance: replaces the geometry's scalars.
+  /// One number for the whole instance; it replaces the geometry's scalars.
   std::optional<double> scalar{};
-  /// The mapping from its scalars to colours: an index into SceneView::scalar_mappings, where there
-  /// are some. These replace colours, materials' base colours and textures.
+  /// The mapping from its scalars to colours: an index into SceneView::scalar_mappings, if there
+  /// are any. These colours replace the geometry's, and the materials' base colours and textures.
   std::uint32_t scalar_mapping = 0;
 
-  /// The triangle mesh that it draws; null: another geometry.
+  /// The triangle mesh that it draws; null if it draws another geometry.
   [[nodiscard]] const MeshView* mesh() const { return geometry.get_if<MeshView>(); }
 };
 
@@ -162,9 +163,9 @@ struct SceneView {
   std::span<const ScalarMapping> scalar_mappings{};  ///< empty: scalars colour nothing
 };
 
-/// A geometry that is no mesh, with arrays of its own.
+/// A geometry that is no mesh and owns its arrays.
 using Geometry = std::variant<Points, Lines, Spheres, Cylinders, Tubes, Discs>;
-/// A view of its arrays, which must outlive it.
+/// A view of the arrays of `geometry`, which must outlive it.
 [[nodiscard]] GeometryView view(const Geometry& geometry);
 
 /// An instance of a Scene; InstanceView describes the fields of its look.
@@ -194,44 +195,47 @@ struct Scene {
   std::vector<Material> materials{};  ///< empty: the file has none
   std::vector<Texture> textures{};
   std::vector<Camera> cameras{};
-  std::vector<Light> lights{};    ///< of its files; a picture has those of FrameOptions
-  std::vector<Motion> motions{};  ///< what moves: `pose` (motion.hpp)
+  std::vector<Light> lights{};    ///< from its files; a picture has those of FrameOptions
+  std::vector<Motion> motions{};  ///< what `pose` moves (motion.hpp)
   std::vector<ScalarMapping> scalar_mappings{};
-  /// The name of the scalars that instances show, where their geometry has some of it; empty: none.
+  /// The name of the scalars that instances show, if their geometry has scalars of that name;
+  /// empty: none.
   std::string shown_scalars{};
   /// One sentence for each thing that a reader left out or found odd; nothing is lost silently.
   std::vector<std::string> warnings{};
 
-  /// Appends `other` behind this scene: indices into meshes, geometries, materials and textures are
-  /// shifted. Where one of the two has no materials it is given plain ones.
+  /// Appends `other` behind this scene; its indices into meshes, geometries, materials, textures
+  /// and scalar mappings are shifted. If only one of the two has materials, the other is given
+  /// plain ones.
   void append(Scene other);
-  /// Moves everything but the cameras: `to_world` lies before all matrices of instances, and moves
-  /// lights.
+  /// Moves everything but the cameras: multiplies the matrices of instances by `to_world` from the
+  /// left, and moves lights.
   void place(const Mat4d& to_world);
-  /// The triangles of the meshes of all instances. Throws Error{invalid_argument} for an instance
-  /// whose mesh or geometry does not exist.
+  /// The number of triangles in the meshes of all instances. Throws Error{invalid_argument} for an
+  /// instance whose mesh or geometry does not exist.
   [[nodiscard]] std::uint64_t triangle_count() const;
-  /// The same and the primitives of other geometries: all that have an id. Throws likewise.
+  /// The number of all that have an id: these triangles, and the primitives of other geometries.
+  /// Throws likewise.
   [[nodiscard]] std::uint64_t primitive_count() const;
 };
 
-/// The material of instances that have none: the plain shaders' colour, or the geometry's own
-/// colours, which blend.
+/// The material of instances that have none. It shows the plain shaders' colour or, if
+/// `has_colors`, the geometry's own colours, which blend.
 [[nodiscard]] Material plain_material(bool has_colors);
 
 /// Gives plain_material() to the meshes and geometries of a scene without materials. Their own
 /// colours, and those of instances, blend.
 void add_plain_materials(Scene& scene);
 
-/// The borrowed form of a scene; keeps the instances that the span points to, and the views that
-/// these refer to, which copies share. The scene must outlive it.
+/// The borrowed form of a scene, which must outlive it. It keeps the instances that the span points
+/// to, and the views that these refer to; copies share the views.
 class SceneBinding {
  public:
   /// Throws Error{invalid_argument} for an instance whose mesh or geometry does not exist.
   explicit SceneBinding(const Scene& scene);
   explicit SceneBinding(const Scene&& temporary) = delete;
-  /// Prepares its meshes (PreparedMesh), which are then to stay as they are: for many pictures.
-  /// Throws as that.
+  /// Prepares the meshes (PreparedMesh) for many pictures; they must stay as they are from then on.
+  /// `threads` 0: all. Throws as PreparedMesh.
   void prepare(int threads = 0);
   [[nodiscard]] SceneView view() const;
 
@@ -244,7 +248,7 @@ class SceneBinding {
   std::vector<PreparedMesh> prepared_;
 };
 
-/// Axis-aligned box and the vertices it was taken from.
+/// An axis-aligned box, and how many vertices it was taken from.
 struct Bounds {
   Vec3d min{}, max{};
   std::uint64_t vertices_in_use = 0;  ///< 0: the box is meaningless
@@ -252,59 +256,59 @@ struct Bounds {
 
 // Scalars.
 
-/// Whether a picture shows numbers by colours of this instance: it has some, and a mapping.
+/// Whether a picture shows numbers of this instance by colours: it has some, and a mapping.
 [[nodiscard]] bool shows_scalars(const SceneView& scene, const InstanceView& instance);
 
-/// The mapping with its range: its own, or from the least to the greatest finite number of the
-/// instances that it is for (of those above 0 with a logarithm). Throws Error{invalid_argument} as
-/// ScalarColors, and for a number that is none of a mapping. O(scalars).
+/// The colours of a mapping over its range. A mapping without one takes that of scalars_in_use
+/// (range_of). Throws Error{invalid_argument} as ScalarColors, and for a `mapping` out of range.
+/// O(scalars).
 [[nodiscard]] ScalarColors scalar_colors(const SceneView& scene, std::size_t mapping = 0);
-/// The numbers that instances in view show by a mapping, from the least to the greatest that is
-/// finite (and above 0, with a logarithm); where there is none it is upside down, from infinity to
-/// −infinity. Throws as scalar_colors.
+/// The range of the numbers that visible instances show by a mapping, from the least to the
+/// greatest that is finite (and above 0, if it is logarithmic). If there is none it is upside down,
+/// from infinity to −infinity. Throws as scalar_colors.
 [[nodiscard]] ScalarRange scalars_in_use(const SceneView& scene, std::size_t mapping = 0);
-/// The range that a mapping without one takes for these numbers; where there are none, all are one.
+/// The range that a mapping without one takes for numbers of this range; if it is upside down, 0 to
+/// 1, or 1 to 1 if the mapping is logarithmic.
 [[nodiscard]] ScalarRange range_of(const ScalarMapping& mapping, ScalarRange in_use);
 
 /// The scalars of one name in a scene's geometries.
 struct ScalarSummary {
   std::string name;
   std::uint64_t values = 0;
-  ScalarRange range;      ///< of the finite ones
-  std::uint64_t nan = 0;  ///< how many are not finite
+  ScalarRange range;      ///< of the finite values
+  std::uint64_t nan = 0;  ///< how many values are not finite
   bool operator==(const ScalarSummary&) const = default;
 };
-/// In the order in which geometries have them. O(scalars).
+/// Summaries in the order in which geometries have the names. O(scalars).
 [[nodiscard]] std::vector<ScalarSummary> scalar_summaries(const Scene& scene);
 
-/// Sets Scene::shown_scalars. `x`, `y`, `z` and `distance` are made where no geometry has scalars
-/// of the name: the place in the world, and how far it is from the middle of the scene's box; a
-/// mesh or geometry of several instances then becomes one an instance. Throws Error{not_found},
-/// which lists the names. `whole`: the box of the scene that this one is a part of.
+/// Sets Scene::shown_scalars. If no geometry has scalars of the name, `x`, `y`, `z` (the place in
+/// the world) and `distance` (how far it is from the middle of the scene's box) are made; a mesh or
+/// geometry of several instances then becomes one for each. Throws Error{not_found}, which lists
+/// the names. `whole`: the box of the scene of which this one is a part.
 void show_scalars(Scene& scene, const std::string& name, const Bounds* whole = nullptr);
 /// Whether some geometry has scalars of that name.
 [[nodiscard]] bool has_scalars(const Scene& scene, const std::string& name);
 
-/// Bounds, in world space, of the finite vertices that primitives use. O(vertices + primitives).
+/// The box, in world space, of the finite vertices that primitives use. O(vertices + primitives).
 /// Throws Error{invalid_argument} for an index out of range, as fit_camera.
 [[nodiscard]] Bounds bounds(const SceneView& scene);
 
 class FitRanks;  // fit.hpp
 
-/// The default camera (`--fit`): centre = centre of the bounding box of the vertices in use,
-/// r = distance of the farthest of them from it (0 counts as 1), eye = centre + (0, 0, d) with
-/// d = r / sin(fov/2), looking along −z, +y up, planes as place_planes (fit.hpp) has them, all in
-/// float64; orthographic: height 2 r. Throws Error{invalid_argument} unless
-/// 0 < fov_rad < π, of an orthographic camera, too, and for directions that world_to_camera
-/// refuses.
+/// The default camera (`--fit`), computed in float64. It looks along `direction` at the centre of
+/// bounds(scene). r is the distance from there to the farthest vertex in use (0 counts as 1), and
+/// the eye is r / sin(fov/2) away. place_planes (fit.hpp) gives the planes; an orthographic picture
+/// is 2 r high. Throws Error{invalid_argument} unless 0 < fov_rad < π, of an orthographic camera,
+/// too, and for directions that world_to_camera refuses.
 [[nodiscard]] Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic,
                                 Vec3d direction = {0, 0, -1}, Vec3d up = {0, 1, 0},
                                 FitRanks* ranks = nullptr);
 
-/// Area-weighted vertex normals: at each position index the normalized sum of the cross products of
-/// its triangles' edges. `positions.size()` values; (0, 0, 0) where no triangle touches. `indices`
-/// as MeshView's: empty, they are the positions in order, and each triangle has its own normal.
-/// Throws Error{invalid_argument} for an index out of range. O(positions + indices).
+/// Area-weighted vertex normals: for each position the normalized sum of the cross products of its
+/// triangles' edges, (0, 0, 0) where no triangle touches. `indices` are as MeshView's: if they are
+/// empty, positions are taken in order, and each triangle has its own normal. Throws
+/// Error{invalid_argument} for an index out of range. O(positions + indices).
 [[nodiscard]] std::vector<Vec3> vertex_normals(const ArrayView<Vec3>& positions,
                                                const IndexView& indices);
 

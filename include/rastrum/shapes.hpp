@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Procedural shapes: what the demo, the tests and the benchmarks draw without any file.
+// Procedural shapes, which the demo, the tests and the benchmarks draw without any file.
 //
-// All face outward counter-clockwise and are the same on every machine (up to the last bits of its
-// sine). A parameter out of range throws Error{invalid_argument} that names it.
+// All triangles face outward counter-clockwise. The shapes are the same on every machine. A
+// parameter out of range throws Error{invalid_argument} that names it.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,8 @@ namespace shapes {
 /// with analytic normals and texture coordinates. The degenerate edges of lid and bottom stay
 /// degenerate.
 [[nodiscard]] Mesh teapot(int n = 16);
-/// Latitude-longitude sphere of radius 1, closed: `rings` bands of `segments` quads, the two at the
-/// poles of triangles; 2 (rings − 1) segments triangles.
+/// Latitude-longitude sphere of radius 1, closed: `rings` bands of `segments` quads, but of
+/// triangles at the two poles; 2 (rings − 1) segments triangles.
 [[nodiscard]] Mesh sphere(int rings = 32, int segments = 64);
 /// Closed tube of radius `tube` around the (p, q) torus knot, p turns about the y axis and q
 /// through the torus of radii 1 and 0.4: 2 segments · sides triangles. p and q have no common
@@ -45,36 +45,38 @@ namespace shapes {
 
 // Surfaces that are no meshes (surfaces.hpp), coloured by place.
 
-/// Random spheres in the cube [−1, 1]³ with radii from [min_radius, max_radius], each size of which
-/// covers as much.
+/// Random spheres in the cube [−1, 1]³ with radii from [min_radius, max_radius]; small ones are
+/// more frequent, so that each size covers as much.
 [[nodiscard]] Spheres spheres(int count = 1000, float min_radius = 0.02F, float max_radius = 0.2F,
                               std::uint64_t seed = 1);
-/// Random cones of `length` in the cube [−1, 1]³, closed, with `radius` at one end and less at the
+/// Random closed cones of `length` in the cube [−1, 1]³, with `radius` at one end and less at the
 /// other.
 [[nodiscard]] Cylinders cylinders(int count = 500, float length = 0.4F, float radius = 0.04F,
                                   std::uint64_t seed = 1);
-/// A closed tube of one radius around the curve of `torus_knot`, of `segments`.
+/// A closed tube of one radius around the curve of `torus_knot`, made of `segments` segments.
 [[nodiscard]] Tubes tube(int p = 2, int q = 3, int segments = 256, float radius = 0.15F);
-/// Random discs as the spheres.
+/// Random discs, with places and radii as for `spheres`.
 [[nodiscard]] Discs discs(int count = 1000, float min_radius = 0.02F, float max_radius = 0.2F,
                           std::uint64_t seed = 1);
 
-/// Every triangle split in 4 at the edge midpoints, `times` (0 to 16) times; shared edges share the
-/// new vertices, triangle t becomes 4t … 4t + 3 (a corner each, then the middle), attributes, also
-/// those with indices of their own, are interpolated linearly.
+/// Splits every triangle in 4 at the edge midpoints, `times` (0 to 16) times. Shared edges share
+/// the new vertices. Triangle t becomes 4t … 4t + 3 (a corner each, then the middle). Attributes,
+/// also those with indices of their own, are interpolated linearly.
 /// Throws Error{out_of_memory} before the result is allocated if it would exceed 2³² vertices or
 /// 5.7 · 10⁹ triangles, and Error{invalid_argument} for indices out of range.
 /// Cost: a radix sort of the edges per step, about 0.1 µs per triangle of the result on one core.
 [[nodiscard]] Mesh subdivide(const Mesh& mesh, int times);
 
-/// A shape by its specification, as on the command line: `teapot`,
-/// `hairball?strands=100&width=0.01`, as one instance. Throws Error{invalid_argument} naming the
-/// shape or parameter and listing the known ones.
+/// A shape by its specification, as on the command line, as one instance: `teapot`,
+/// `hairball?strands=100&width=0.01`. Throws Error{invalid_argument} that names the unknown shape
+/// or parameter and lists the known ones.
 [[nodiscard]] Scene scene_from_spec(std::string_view spec);
-/// The mesh of it. Throws Error{invalid_argument} for a shape that is none, too.
+/// The mesh of scene_from_spec. Throws likewise, and Error{invalid_argument} for a shape that is no
+/// mesh.
 [[nodiscard]] Mesh from_spec(std::string_view spec);
 
-/// Name, parameters with their defaults, and a line of description of each shape, for `--help`.
+/// The name, the parameters with their defaults, and a line of description of a shape, for
+/// `--help`.
 struct ShapeInfo {
   std::string name, parameters, description;
 };
@@ -87,9 +89,9 @@ struct ShapeInfo {
 
 namespace RASTRUM_API rastrum {
 
-/// A picture (straight alpha) as a quad 1 high and as wide as its proportions, standing on the
-/// middle of its lower edge at the origin and facing +z; seen from both sides, unlit, blended by
-/// its alpha. Throws Error{invalid_argument} for an empty picture.
+/// A picture (straight alpha) on a quad that is 1 high and has the picture's proportions. The
+/// middle of its lower edge is at the origin, and it faces +z. It is seen from both sides, unlit
+/// and blended by its alpha. Throws Error{invalid_argument} for an empty picture.
 [[nodiscard]] Scene sprite(Image<Rgba8> picture);
 
 }  // namespace rastrum

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stopping work that nobody waits for any more, such as the picture of a camera that has moved on.
+// Stops work that nobody waits for any more, such as the picture of a camera that has moved on.
 // Renderer, TerrainRenderer and SceneOnTerrain take a token for each frame; a scope serves what
-// calls them deep down.
-// A token is in force for the thread that made a StopScope, and for the loops that it begins there,
-// nested ones too: the loop is the one place where work is handed out, so that no word and no stage
-// needs a parameter for it, and nothing is paid where there is no scope.
+// calls them deep down. A token is in force for the thread that made a StopScope and for the loops
+// that it begins there, nested ones too. The loop is the one place where work is handed out, so no
+// word and no stage needs a parameter for it.
 //
-// Cost: none without a scope but a look at a thread-local pointer a loop and, in bodies that ask by
-// themselves, at each question; with one an atomic read a range.
-// Source: C++20's std::stop_token; that it is found through the thread, not passed, is as in
-// oneTBB's task_group_context.
+// Cost: without a scope a look at a thread-local pointer for each loop and, in bodies that ask by
+// themselves, for each question; with one an atomic read for each range.
+// Source: C++20's std::stop_token; it is found through the thread, not passed, as in oneTBB's
+// task_group_context.
 #pragma once
 
 #include <concepts>
@@ -24,15 +23,16 @@ class Stopped final : public Error {
   Stopped() : Error(Errc::stopped, "stopped, as asked") {}
 };
 
-/// Something that asks to stop: a std::stop_token or std::stop_source, or a class of one's own.
-/// stop_requested() is called by several threads at once.
+/// A type that can ask to stop: std::stop_token, std::stop_source or a class of one's own. Several
+/// threads call stop_requested() at once.
 template <class T>
 concept AsksToStop = requires(const T& token) {
   { token.stop_requested() } -> std::convertible_to<bool>;
 };
 
-/// A view of one, which must outlive it; by default of none. Calls take it as a parameter, so give
-/// them the std::stop_token itself, <stop_token> being yours to include.
+/// A view of something that asks to stop, which must outlive it; by default a view of nothing.
+/// Calls take it as a parameter: give them the std::stop_token itself, and include <stop_token>
+/// yourself.
 class StopToken {
  public:
   StopToken() = default;
@@ -53,17 +53,18 @@ class StopToken {
 };
 
 /// While it lives, the library's loops that this thread begins throw Stopped once `token` is asked
-/// to stop: ranges that have begun are finished unless they ask by themselves, the others are left
+/// to stop. Ranges that have begun are finished unless they ask by themselves; the others are left
 /// out. Whatever is between two loops runs to its end. Scopes nest; the inner one counts.
 class StopScope {
  public:
-  /// `token` must outlive the scope; one that nobody can stop leaves the scope around it in force.
+  /// `token` must outlive the scope. If nobody can stop it, the scope around this one stays in
+  /// force.
   template <AsksToStop T>
   explicit StopScope(const T& token) noexcept
       : token_(token), outer_(enter(token_.stop_possible() ? &token_ : current())) {}
   template <AsksToStop T>
   StopScope(const T&&) = delete;  // this token ends before the scope does: give it a name first
-  /// The same scope on another thread, or none.
+  /// Puts the token of a scope (current()) in force on another thread; null: none.
   explicit StopScope(const StopToken* token) noexcept : outer_(enter(token)) {}
   ~StopScope() { enter(outer_); }
   StopScope(const StopScope&) = delete;
@@ -80,13 +81,12 @@ class StopScope {
   const StopToken* outer_;
 };
 
-/// Whether the work of the calling thread is to end. For bodies that take long, between pieces of
-/// their work.
+/// Whether the calling thread's work is to end. Bodies that take long ask between pieces of it.
 [[nodiscard]] inline bool stop_requested() noexcept {
   const StopToken* const token = StopScope::current();
   return token != nullptr && token->stop_requested();
 }
-/// Throws Stopped where it is.
+/// Throws Stopped if stop_requested().
 inline void throw_if_stopped() {
   if (stop_requested()) throw Stopped{};
 }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Surfaces that are no triangles: spheres, cylinders and cones, tubes, discs. They are drawn
-// exactly, as quadrics (docs/primitives.md), not as meshes of them. Views over the caller's arrays,
-// of any types and strides (array.hpp); nothing is copied, so they must outlive the render. Common
-// rules: coordinates and radii are in object space; under any affine object_to_world a sphere is
-// the ellipsoid that it becomes. Positions and normals in float64 are taken as they are, radii and
+// exactly, as quadrics (docs/primitives.md), not as meshes of them. A view has the caller's arrays,
+// of any types and strides (array.hpp); nothing is copied, so they must outlive the render. All
+// have in common: coordinates and radii are in object space; any affine object_to_world makes a
+// sphere the exact ellipsoid. Positions and normals in float64 are taken as they are, radii and
 // colours are rounded to float32. A radius of 0 draws nothing. A primitive with a radius that is
-// negative, or with a number that is not finite, is dropped and counted. `radii` empty: `radius`
-// for all. `colors`: display values, straight alpha; empty: the plain colour, or the material's.
-// Arrays that are too short, indices out of range and offsets that do not rise are refused by the
-// render, which names instance, array and place.
+// negative, or with a number that is not finite, is dropped and counted. If `radii` is empty, all
+// have `radius`. `colors` are display values with straight alpha; if they are empty, the material's
+// or the plain colour stands. The render refuses arrays that are too short, indices out of range
+// and offsets that do not rise, and names instance, array and place.
 #pragma once
 
 #include <cstddef>
@@ -34,7 +34,7 @@ struct SpheresView {
   [[nodiscard]] std::size_t size() const { return centers.size(); }
 };
 
-/// A primitive is a cylinder between two positions, a cone where their radii differ. One of length
+/// A primitive is a cylinder between two positions, or a cone if their radii differ. One of length
 /// 0 draws nothing.
 struct CylindersView {
   ArrayView<Vec3> positions{};
@@ -60,7 +60,8 @@ struct CylindersView {
 /// about its two positions, so that neighbours share a sphere.
 struct TubesView {
   ArrayView<Vec3> positions{};
-  /// Polyline i has positions [offsets[i], offsets[i + 1]); n + 1 that rise; empty: one polyline.
+  /// Polyline i has the positions [offsets[i], offsets[i + 1]): rising, one more than polylines.
+  /// Empty: one polyline.
   IndexView offsets{};
   ArrayView<float> radii{};  ///< one a position
   float radius = 1;
@@ -68,7 +69,7 @@ struct TubesView {
   std::uint32_t material = 0;
   ScalarView scalars{};  ///< one a position, linear along the axis
 
-  /// Segments. O(1).
+  /// The number of segments. O(1).
   [[nodiscard]] std::size_t size() const;
   /// The position at which a segment begins; it ends at the next. O(log polylines).
   [[nodiscard]] std::size_t begin(std::uint64_t segment) const;
@@ -87,7 +88,8 @@ struct DiscsView {
   [[nodiscard]] std::size_t size() const { return centers.size(); }
 };
 
-// The same with arrays of their own, as readers and procedural shapes return them.
+// Surfaces that own their arrays, as readers and procedural shapes return them. The views above say
+// what each array is.
 
 struct Spheres {
   std::string name{};

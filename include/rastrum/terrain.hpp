@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Voxel space: the picture of a terrain from the samples along its columns, near to far (Freeman's
-// patent of 1996; Macke's program; paper 3). docs/terrain_rules.md has the rules.
+// Voxel space: draws a terrain from samples along the columns of its picture, near to far
+// (Freeman's patent of 1996; Macke's program; paper 3). docs/terrain_rules.md has the rules.
 #pragma once
 
 #include <cstddef>
@@ -22,12 +22,12 @@
 namespace RASTRUM_API rastrum {
 namespace terrain {
 
-/// The terrain beyond a map's edge: the map again, its mirror image, its outermost cells, or
+/// The ground beyond a map's edge: the map again, its mirror image, its outermost cells, or
 /// nothing, as in a hole.
 enum class Tiling : std::uint8_t { repeat, mirror, clamp, none };
 
-/// The cell of a map that is `size` long to which coordinate `i` belongs; floor, not truncation.
-/// With `none` the cell at the edge; is_beyond() tells that nothing is there.
+/// The cell, in a map of `size` cells, to which coordinate `i` belongs; rounded down, also below 0.
+/// With `none` it is the cell at the edge; is_beyond() tells that nothing is there.
 [[nodiscard]] RASTRUM_HD inline std::int64_t tiled(std::int64_t i, std::int64_t size,
                                                    Tiling tiling) {
   if (static_cast<std::uint64_t>(i) < static_cast<std::uint64_t>(size)) return i;
@@ -41,7 +41,7 @@ enum class Tiling : std::uint8_t { repeat, mirror, clamp, none };
   return m < size ? m : 2 * size - 1 - m;
 }
 
-/// Whether nothing is at coordinate `i` of such a map.
+/// Whether a map of `size` cells has nothing at coordinate `i`.
 [[nodiscard]] RASTRUM_HD inline bool is_beyond(std::int64_t i, std::int64_t size, Tiling tiling) {
   return tiling == Tiling::none &&
          static_cast<std::uint64_t>(i) >= static_cast<std::uint64_t>(size);
@@ -53,8 +53,8 @@ struct HeightMap {
   Image<Rgba8> colors{};   ///< of any size, stretched over the map; empty: grey by height
 };
 
-/// A terrain without cells. Both are called from several threads at once, for the samples of a row
-/// of the picture; coordinates may be any finite numbers.
+/// A terrain without cells: functions of places in the plane. Both are called from several threads
+/// at once, for n samples of a row of the picture; coordinates may be any finite numbers.
 class Surface {
  public:
   virtual ~Surface() = default;
@@ -64,35 +64,36 @@ class Surface {
 
 class RASTRUM_INSIDE LitFunction;
 
-/// A terrain to look at: cheap to copy (a move is a copy), never changed, safe to share between
-/// threads.
+/// A terrain to look at. It is cheap to copy (a move is a copy), never changes, and is safe to
+/// share between threads.
 class Terrain {
  public:
   Terrain(const Terrain&) = default;
   Terrain& operator=(const Terrain&) = default;
-  /// Takes over the map. Throws Error{invalid_argument} where it has no cell. O(cells).
+  /// Takes over the map. Throws Error{invalid_argument} if it has no cell. O(cells).
   explicit Terrain(HeightMap map);
   explicit Terrain(Shared<const Surface> surface);
-  /// The terrain of a function that is lit (function_terrain, terrain_light.hpp).
+  /// The terrain of a function with its light (function_terrain, terrain_light.hpp).
   explicit Terrain(Shared<const LitFunction> function);
 
-  /// From two functors `float height(double x, double y)` and `Rgba8 color(double x, double y)`.
+  /// A terrain of two functors `float height(double x, double y)` and `Rgba8 color(double x, double
+  /// y)`.
   template <class Height, class Color>
   [[nodiscard]] static Terrain of(Height height, Color color);
 
   /// The same heights under other colours, of any size: a map's light, for one. O(1) beside the
-  /// move. Requires a map.
+  /// move. Throws Error{invalid_argument} for a terrain that is no map, and for empty colours.
   [[nodiscard]] Terrain with_colors(Image<Rgba8> colors) const;
 
   [[nodiscard]] bool is_map() const { return surface_ == nullptr; }
-  /// The map's; requires is_map().
+  /// The map's heights, and its colours; both require is_map().
   [[nodiscard]] const Shared<const Image<float>>& heights() const { return heights_; }
   [[nodiscard]] const Shared<const Image<Rgba8>>& colors() const { return colors_; }
   /// The largest height of a map, NaN left out; −inf where there is none. +inf for functions.
   [[nodiscard]] float highest() const { return highest_; }
-  /// Throws Error{invalid_argument} for a map.
+  /// The functions. Throws Error{invalid_argument} for a map.
   [[nodiscard]] const Surface& surface() const;
-  /// The surface, where function_terrain made it; else null.
+  /// The surface, if function_terrain made it; else null.
   [[nodiscard]] const LitFunction* lit_function() const { return lit_function_; }
 
   /// The height at a point, unfiltered; NaN in a hole.
@@ -130,7 +131,7 @@ Terrain Terrain::of(Height height, Color color) {
 
 // The options of a picture of a terrain, and its results beside the images.
 
-/// Where one stands and looks. The view is always level; looking up or down shifts the horizon.
+/// Where one stands and looks. The view is always level: looking up or down shifts the horizon.
 struct TerrainCamera {
   double x = 512, y = 800;  ///< cells
   double altitude = 78;     ///< in the unit of the heights
@@ -154,7 +155,7 @@ enum class Projection : std::uint8_t {
   cylindrical,  ///< columns are equal angles: nothing is stretched at wide angles, up to 360°
 };
 
-/// Colours fade to `color` by 1 − exp(−density · (distance − start)); density 0 is none.
+/// Colours fade to `color` by 1 − exp(−density · (distance − start)); density 0: there is no fog.
 struct Fog {
   double density = 0;            ///< per cell
   double start = 0;              ///< cells
@@ -169,27 +170,29 @@ inline constexpr Rgba8 kSky{0x90, 0x90, 0xE0, 255};
 struct TerrainOptions {
   int width = 1280, height = 720;
   double distance = 800;  ///< cells; how far samples are taken, up to 8e6
-  /// The original program bit for bit (docs/terrain_rules.md): float64, its scale of 240 rows, 90°,
-  /// 10 above the ground, steps of 1, 1.005, …. Fov, scale, steps, projection, filter (but none)
-  /// and ground clearance are then refused unless they stand at their defaults.
+  /// Draws as the original program, bit for bit (docs/terrain_rules.md): float64, a scale of 240
+  /// rows, 90°, 10 above the ground, steps of 1, 1.005, …. Field of view, scale, steps, projection,
+  /// filter and ground clearance must then stand at their defaults, and tiling `none` is refused.
   bool classic = false;
-  double fov_rad = std::numbers::pi / 2;  ///< across; below π for planar, up to 2π for cylindrical
-  /// Rows that a height of 1 takes at distance 1; 0: as many as columns in the picture's middle.
+  double fov_rad =
+      std::numbers::pi / 2;  ///< across the width; below π for planar, up to 2π for cylindrical
+  /// Rows that a height of 1 takes at distance 1, up to 1e7; 0: as many as columns that a width of
+  /// 1 takes in the picture's middle.
   double scale_px = 0;
-  /// Distances are 1, 1 + step, … with steps that grow by `dz` each. Step 0 leaves them to the
-  /// filter: `bilinear`, which has something to show within a cell, takes steps as long as a pixel
-  /// is high at their distance (a share of it, so that `dz` is not used); the others take 1 and
-  /// `dz`.
+  /// Samples are taken at the distances 1, 1 + step, …; each step is `dz` longer than the one
+  /// before. Step 0 leaves them to the filter. `bilinear`, which has something to show within a
+  /// cell, takes steps as long as a pixel is high at their distance (a share of it, so that `dz` is
+  /// not used); the others take 1 and `dz`.
   double step = 1, dz = 0.005;
   MapFilter filter = MapFilter::none;
   Tiling tiling = Tiling::repeat;
   Projection projection = Projection::planar;
   Rgba8 sky = kSky;
   Fog fog{};
-  /// The camera is lifted to this much above the ground under it before a frame; none: it stays
-  /// where it is, under the ground too. `classic` always takes 10.
+  /// Before a frame the camera is lifted to at least this height above the ground under it; none:
+  /// it stays where it is, under the ground too. `classic` always takes 10.
   std::optional<double> ground_clearance{};
-  /// Another way to the same picture: rastrum/family.hpp has paper 3's. Null: Rastrum's own.
+  /// Another way to draw the same picture: rastrum/family.hpp has paper 3's. Null: Rastrum's own.
   const AddedMethod* added = nullptr;
 };
 
@@ -220,17 +223,17 @@ struct TerrainStats {
                                     ///< the targets lie in memory
   std::uint64_t visible = 0;        ///< samples that were drawn
   std::uint64_t peak_bytes = 0;     ///< scratch and pyramids, beyond the terrain and the images
-  std::uint64_t device_bytes = 0;   ///< of a GPU's memory: the map, the images, scratch
-  Device device = Device::threads;  ///< that drew
-  std::string device_why;  ///< why Device::automatic took it, or why not the one that was asked for
+  std::uint64_t device_bytes = 0;   ///< of a GPU's memory: for the map, the images, scratch
+  Device device = Device::threads;  ///< the one that drew
+  std::string device_why;  ///< why Device::automatic took it, or why it is not the one asked for
   std::vector<StageTime> stages;
   double frame_ms = 0;
   Isa isa = Isa::scalar;
 };
 
-/// Draws frames, each with options of its own; keeps threads, scratch and pyramids between frames,
+/// Draws frames, each with its own options. It keeps threads, scratch and pyramids between frames,
 /// and with Device::cuda the map that was drawn last in the device's memory. Terrains that a device
-/// cannot draw, a caller's function for instance, are drawn by the CPU's threads, and
+/// cannot draw, such as a caller's function, are drawn by the CPU's threads, and
 /// TerrainStats::device_why says so.
 ///
 /// Threads and stopping: as Renderer (render.hpp). Calls from several threads are drawn one
@@ -243,17 +246,17 @@ class TerrainRenderer {
   TerrainRenderer(TerrainRenderer&&) noexcept;
   TerrainRenderer& operator=(TerrainRenderer&&) noexcept;
 
-  /// Fills `targets`. The picture depends on terrain, camera and options alone: not on the method
-  /// (but for MapFilter and cells that are the same), device, threads or instruction set.
-  /// Cost: O(width · slices + width · height). Throws Error{invalid_argument} that names an
-  /// option out of range, for a camera that is not finite or farther than 1e12 cells away, or
-  /// targets of another size; Error{out_of_memory} for a map that is too large for the CUDA device
-  /// that was asked for.
+  /// Fills `targets`. The picture depends on terrain, camera and options alone, not on
+  /// TerrainOptions::added, the device, threads or instruction set.
+  /// Cost: O(width · slices + width · height). Throws Error{invalid_argument} that names an option
+  /// out of range, for a camera that is not finite or farther than 1e12 cells away, and for targets
+  /// of another size; Error{out_of_memory} for a map that is too large for the CUDA device that was
+  /// asked for.
   TerrainStats render(const Terrain& terrain, const TerrainCamera& camera,
                       const TerrainOptions& frame, const TerrainTargets& targets,
                       StopToken stop = {});
 
-  /// With what Device::automatic took.
+  /// The options, with the device that Device::automatic took.
   [[nodiscard]] const TerrainRendererOptions& options() const;
 
  private:
@@ -261,30 +264,30 @@ class TerrainRenderer {
   Held<Owner<Impl>> impl_;
 };
 
-/// The height of the ground at a point as it is drawn near by: of the cell, between the centres of
-/// four with MapFilter::bilinear; NaN in a hole.
+/// The height of the ground at a point as it is drawn near by: that of the cell or, with
+/// MapFilter::bilinear, one between the centres of four cells; NaN in a hole.
 [[nodiscard]] double ground_at(const Terrain& terrain, double x, double y,
                                const TerrainOptions& options);
 
-/// The camera as it stands `clearance` above the ground under it, if it was lower.
+/// The camera, lifted to `clearance` above the ground under it if it was lower.
 [[nodiscard]] TerrainCamera above_ground(const Terrain& terrain, const TerrainCamera& camera,
                                          double clearance, Tiling tiling = Tiling::repeat);
 
-// The matrix under which points of the world fall on the pixels of the terrain's picture, so that
-// meshes and sprites compose with it by depth.
+// The matrix that takes points of the world to the pixels of the terrain's picture, so that meshes
+// and sprites compose with it by depth.
 
-/// Maps (x, height, y, 1), which is Rastrum's world with +y up and the map's rows along
-/// +z, to clip space: x and y as everywhere (docs/conventions.md), depth z/w = near / distance,
-/// reversed, with an infinite far plane. The horizon is a shear, the roll a rotation of the
-/// picture. A point on a sample that is drawn falls into its column and on the upper edge of its
-/// first row, the columns and rows of `classic` (W/2 across, 240 down) included. Throws
-/// Error{invalid_argument} for the cylindrical projection, which is no matrix. Round it to float32
-/// for draws; far from the map's corner give positions relative to the camera instead, and a camera
-/// at 0, 0.
+/// Maps (x, height, y, 1), which is Rastrum's world with +y up and the map's rows along +z, to clip
+/// space: x and y as everywhere (docs/conventions.md), depth z/w = near / distance, reversed, with
+/// an infinite far plane. The horizon is a shear, the roll a rotation of the picture. A point on a
+/// sample that is drawn falls into its column and on the upper edge of its first row; this holds
+/// for the columns and rows of `classic` (W/2 across, 240 down), too. Throws
+/// Error{invalid_argument} for the cylindrical projection, which is no matrix. Round the matrix to
+/// float32 for draws; far from the map's corner give positions relative to the camera instead, and
+/// a camera at 0, 0.
 [[nodiscard]] Mat4d world_to_clip(const TerrainOptions& options, const TerrainCamera& camera,
                                   double near = 1);
 
-/// The reversed depth of a distance under that matrix: 0 at +inf, the sky.
+/// The reversed depth that world_to_clip gives a distance: 0 at +inf, the sky.
 [[nodiscard]] inline float reversed_depth(float distance, double near = 1) {
   return static_cast<float>(near / static_cast<double>(distance));
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The stage before a terrain's renderer: sun and shadows make lit colours, so that the renderer
-// only samples heights and colours; and terrains that are functions, which are lit as they are
-// sampled.
+// only samples heights and colours. Terrains that are functions are lit as they are sampled.
 #pragma once
 
 #include <cstddef>
@@ -34,10 +33,10 @@ struct ShadowOptions {
 };
 
 /// 1 where the ray from the middle of a cell's top to the sun meets a higher cell, else 0: exact,
-/// the same on every device. Holes hide nothing. Cost: two lines of a sweep a
-/// cell and column of the map, further columns where the longest shadow reaches beyond the map's
-/// edge, and a traversal of the few cells that the sweep cannot decide. Throws
-/// Error{invalid_argument} for a sun that is not finite or above 90°.
+/// the same on every device. Holes hide nothing. Cost: two lines of a sweep for each cell and each
+/// column of the map, further columns where the longest shadow reaches beyond the map's edge, and a
+/// traversal for the few cells that the sweep cannot decide. Throws Error{invalid_argument} for a
+/// sun that is not finite or above 90°.
 [[nodiscard]] Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun,
                                                 const ShadowOptions& options = {});
 
@@ -53,11 +52,12 @@ struct March {
   int steps = 256;         ///< d_c, 2 to 65,536
 };
 
-/// How many of a cell's samples hide the sun: those whose cell is higher than the ray, which starts
-/// at the cell's corner as in the paper; sample k lies k · distance / steps along the unit vector
-/// to the sun. Cells are floored where the paper's code truncates (which differs at negative
-/// coordinates), and own height + climb is compared in float32. Holes count as in sharp_shadows.
-/// Cost: cells × steps. Throws Error{invalid_argument} for a sun or march out of range.
+/// How many samples of a march hide the sun from a cell: samples whose cell is higher than the ray.
+/// The ray starts at the cell's corner, as in the paper; sample k lies k · distance / steps along
+/// the unit vector to the sun. Cells are rounded down where the paper's code truncates (which
+/// differs at negative coordinates), and the ray's height, the cell's own + its climb, is compared
+/// in float32. Holes count as in sharp_shadows. Cost: cells × steps. Throws Error{invalid_argument}
+/// for a sun or march out of range.
 [[nodiscard]] Image<std::uint16_t> hidden_samples(ImageView<const float> heights, const Sun& sun,
                                                   const March& march = {},
                                                   const ShadowOptions& options = {});
@@ -66,58 +66,58 @@ enum class Shadows : std::uint8_t {
   none,
   accumulated,  ///< paper 3: colour · √(1 / (1 + n)), n the hidden samples of a march
   sharp,        ///< colour · ambient where the sun is hidden
-  soft,         ///< between the two by the part of the sun's disc that is seen
+  soft,         ///< between the two, by the part of the sun's disc that is seen
 };
 
 struct Light {
   Sun sun{};
   Shadows shadows = Shadows::none;
-  /// Slopes get ToSun::shade. For colours that are painted without light; satellite pictures have
-  /// it.
+  /// Slopes get ambient + (1 − ambient) · max(0, cosine between normal and sun). For colours that
+  /// are painted without light; satellite pictures have it.
   bool hill_shading = false;
-  float ambient = 0.45F;           ///< of a colour, where no sun is; [0, 1]
-  double sun_radius_deg = 0.2666;  ///< of soft shadows
-  March march{};                   ///< of accumulated ones
-  /// Where colours and heights differ in size the coarser ones are read between the centres of
-  /// their cells, as MapFilter::bilinear reads heights; else each cell has one light, each texel
-  /// one colour.
+  float ambient = 0.45F;           ///< share of a colour where no sun is, [0, 1]
+  double sun_radius_deg = 0.2666;  ///< for `soft`
+  March march{};                   ///< for `accumulated`
+  /// If colours and heights differ in size, the coarser ones are read between the centres of their
+  /// cells, as MapFilter::bilinear reads heights; else each cell has one light, each texel one
+  /// colour.
   bool smooth = false;
 };
 
-/// The sky in the light of the sun, as FutSpace's dims with it (paper 3's program; the paper gives
-/// no rule, so this is ours): `by_day` where the sun stands 30° high or more, from there on falling
-/// linearly to a sixteenth at −6°, the end of civil twilight, and staying so.
+/// The sky in the light of the sun, dimmed as in FutSpace (paper 3's program; the paper gives no
+/// rule, so this is ours). It is `by_day` if the sun stands 30° high or more, falls linearly from
+/// there to a sixteenth at −6°, the end of civil twilight, and stays so.
 [[nodiscard]] Rgba8 sky_in(Rgba8 by_day, const Sun& sun) noexcept;
 
 /// The colours of a map in this light, opaque, as fine as the finer of heights and colours; the
-/// others are repeated, or `smooth`. Empty colours are colors_by_height.
-/// Cost: the shadows', and O(cells). Throws Error{invalid_argument} for what no light can be.
+/// others are repeated, or read as Light::smooth says. Empty colours become grey by height. Cost:
+/// that of the shadows, and O(cells). Throws Error{invalid_argument} for a light out of range.
 [[nodiscard]] Image<Rgba8> lit_colors(const HeightMap& map, const Light& light,
                                       const ShadowOptions& options = {});
 
-/// How much finer than the heights colors_of_heights may be.
+/// The greatest `finer` of colors_of_heights.
 inline constexpr int kMaxFiner = 16;
 
-/// The colours of a map by its heights as numbers, in units of which each is so many cells high;
-/// opaque, whatever the colours' alpha. `finer` times as many texels along each side: heights lie
-/// between the cells' centres then, as MapFilter::bilinear reads them, and are mapped at each
-/// texel, so that steps stay steps; 0: as fine as 2²⁴ texels let it be, 1 to 4. Holes are
-/// ScalarColors::nan. Cost: O(cells · finer²) on `threads` (0: all). Throws Error{invalid_argument}
-/// for colours beyond the largest image.
+/// The colours of a map by its heights as numbers, in units of which each is `cells_a_unit` cells
+/// high; opaque, whatever alpha `colors` have. There are `finer` times as many texels along each
+/// side, up to kMaxFiner. Heights then lie between the cells' centres, as MapFilter::bilinear reads
+/// them, and are mapped at each texel, so that steps stay steps. 0: as fine as 2²⁴ texels let it
+/// be, 1 to 4. Holes are ScalarColors::nan. Cost: O(cells · finer²) on `threads` (0: all). Throws
+/// Error{invalid_argument} for a `finer` out of range and for colours beyond the largest image.
 [[nodiscard]] Image<Rgba8> colors_of_heights(ImageView<const float> heights,
                                              const ScalarColors& colors, double cells_a_unit = 1,
                                              int finer = 1, Tiling tiling = Tiling::repeat,
                                              int threads = 0);
 
-/// Heights of n points of the plane; called from several threads at once.
+/// Writes the heights of n points of the plane; several threads call it at once.
 using HeightFunction =
     Function<void(const double* x, const double* y, std::size_t n, float* heights)>;
 
-/// A terrain of a function: height_color between `low` and `high`, with slopes by central
-/// differences, in this light. Shadows are by the march of each visible sample (paper 3's
-/// generate_shadowmap with a function), `sharp` dark where any sample hides the sun and `soft`
-/// where more and more do: there are no cells that could be traversed. `colors`: of the heights, in
-/// the place of height_color; a device then leaves the terrain to the CPU.
+/// The terrain of a function in this light: height_color between `low` and `high`, with slopes by
+/// central differences. The shadows are those of a march from each visible sample (paper 3's
+/// generate_shadowmap with a function), because there are no cells to traverse: `sharp` is dark
+/// where any sample hides the sun, `soft` where more and more do. `colors` of the heights take the
+/// place of height_color; a device then leaves the terrain to the CPU.
 [[nodiscard]] Terrain function_terrain(HeightFunction function, double low, double high,
                                        const Light& light, std::optional<ScalarColors> colors = {});
 
@@ -125,25 +125,25 @@ using HeightFunction =
 
 struct FunctionInfo {
   std::string_view name, description;
-  double low, high;  ///< what the heights lie between
+  double low, high;  ///< bounds of the heights
 };
 
 /// The functions of paper 3 (its figure 6.1 and its program's list) and fractal noise. Their
-/// arithmetic is ours (no sine of the C library), so they are the same bits on every machine.
+/// arithmetic is ours (no sine of the C library), so their bits are the same on every machine.
 [[nodiscard]] const std::vector<FunctionInfo>& named_functions();
 
-/// Throws Error{not_found} that lists the names.
+/// The function of this name. Throws Error{not_found} that lists the names.
 [[nodiscard]] HeightFunction named_function(std::string_view name);
 
 /// The heights from `low` to `high`.
 struct HeightRange {
   double low = 0, high = 1;
 };
-/// From the least to the greatest finite height on a grid of 128² points over [0, 1024)², for the
-/// colours of expressions; (0, 1) where there is none. Cost: 128² heights.
+/// The least and the greatest finite height on a grid of 128² points over [0, 1024)², for the
+/// colours of expressions; (0, 1) if there is none. Cost: 128² heights.
 [[nodiscard]] HeightRange sampled_range(const HeightFunction& function);
 
-// Terrains that are formulas in a text. They belong to the target Rastrum::io, because they need a
+// Terrains that are formulas in a text. They are in the target Rastrum::io, because they need a
 // library; Rastrum::rastrum has everything else of this file.
 
 /// A formula of x and y in the language of muParser, such as `40*sin(x/30)*cos(y/50)`.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From linear light, which has no upper end, to what a display shows (docs/light.md, "Tone").
+// Maps linear light, which has no upper end, to what a display shows (docs/light.md, "Tone").
 #pragma once
 
 #include <cstdint>
@@ -8,8 +8,7 @@
 
 namespace RASTRUM_API rastrum {
 
-/// The curve for a channel x of linear light, above 0, before the sRGB curve; the result is cut to
-/// 1.
+/// The curve for a channel x > 0 of linear light, before the sRGB curve. The result is cut to 1.
 enum class Tone : std::uint8_t {
   none,      ///< x
   reinhard,  ///< x / (1 + x): Reinhard and others, Photographic tone reproduction (2002)
@@ -19,7 +18,7 @@ enum class Tone : std::uint8_t {
 
 struct ToneMapping {
   Tone tone = Tone::none;
-  float exposure_stops = 0;  ///< light is multiplied by 2 to this before, in [-32, 32]
+  float exposure_stops = 0;  ///< light is first multiplied by 2 to this power, in [-32, 32]
 
   bool operator==(const ToneMapping&) const = default;
 };

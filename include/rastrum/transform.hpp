@@ -26,8 +26,8 @@ constexpr Mat4d scaling(Vec3d by) {
   return r;
 }
 
-/// p + along (normal · p): planes across `normal` slide along `along`. A shear, which keeps
-/// volumes, where the two are at right angles.
+/// Maps p to p + along (normal · p): planes across `normal` slide along `along`. If the two are at
+/// right angles, it is a shear, which keeps volumes.
 constexpr Mat4d shear(Vec3d along, Vec3d normal) {
   const double a[3] = {along.x, along.y, along.z}, n[3] = {normal.x, normal.y, normal.z};
   Mat4d r = Mat4d::identity();
@@ -36,8 +36,8 @@ constexpr Mat4d shear(Vec3d along, Vec3d normal) {
   return r;
 }
 
-/// The mirror image in the plane normal · p = offset · |normal|². `normal` is not 0 and need not be
-/// of unit length. Turns fronts into backs (Winding).
+/// Mirrors in the plane normal · p = offset · |normal|². `normal` is not 0 and need not be of unit
+/// length. Turns fronts into backs (Winding).
 constexpr Mat4d reflection(Vec3d normal, double offset = 0) {
   const double n[3] = {normal.x, normal.y, normal.z};
   const double squared = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
@@ -49,8 +49,8 @@ constexpr Mat4d reflection(Vec3d normal, double offset = 0) {
   return r;
 }
 
-// Unit quaternions: rotations without a preferred axis, that can be interpolated (Shoemake,
-// "Animating rotation with quaternion curves", 1985). In float64, as matrices are composed in it.
+// Unit quaternions: rotations without a preferred axis, which can be interpolated (Shoemake,
+// "Animating rotation with quaternion curves", 1985), in float64 like the matrices.
 
 /// w + x i + y j + z k. A rotation by θ about the unit axis a is (cos θ/2, a sin θ/2).
 struct Quaternion {
@@ -73,10 +73,11 @@ inline Quaternion normalize(const Quaternion& q) {
   return {q.w / length, q.x / length, q.y / length, q.z / length};
 }
 
-/// Right-handed about `axis`, which need not be of unit length; the identity where it is 0.
+/// The right-handed rotation about `axis`, which need not be of unit length; the identity where it
+/// is 0.
 [[nodiscard]] Quaternion rotation_about(Vec3d axis, double angle_rad);
 
-/// The rotation's matrix. `q` of unit length.
+/// The matrix of the rotation `q`, which must be of unit length.
 constexpr Mat4d rotation(const Quaternion& q) {
   Mat4d r = Mat4d::identity();
   const double xx = q.x * q.x, yy = q.y * q.y, zz = q.z * q.z;
@@ -94,7 +95,8 @@ constexpr Mat4d rotation(const Quaternion& q) {
   return r;
 }
 
-/// From a (t = 0) to b (t = 1) at constant angular speed, the shorter way round.
+/// The rotation on the way from a (t = 0) to b (t = 1) at constant angular speed, the shorter way
+/// round.
 [[nodiscard]] Quaternion slerp(const Quaternion& a, const Quaternion& b, double t);
 
 }  // namespace rastrum

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Small vectors. Aggregates of float without padding, so that a caller's `float[3]` arrays can be
+// Small vectors: aggregates of float without padding, so that a caller's `float[3]` arrays can be
 // viewed as `Vec3` without a copy.
 #pragma once
 
@@ -87,7 +87,7 @@ RASTRUM_HD constexpr bool operator==(Vec4 a, Vec4 b) {
   return a.x == b.x && a.y == b.y && a.z == b.z && a.w == b.w;
 }
 
-// Operators that follow from these, for all three.
+// Operators that follow from those above, for Vec2, Vec3 and Vec4.
 template <class V>
 concept Vector = std::same_as<V, Vec2> || std::same_as<V, Vec3> || std::same_as<V, Vec4>;
 
@@ -134,9 +134,10 @@ RASTRUM_HD inline bool is_finite(Vec3 a) {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }
 
-/// A point or direction in float64: where a camera stands, what is computed before it is rounded
-/// to float32 once. Every Vec3 is one; the way back rounds and is said. Its functions are friends,
-/// so that they are found for it alone and what takes a Vec3 has no second meaning.
+/// A point or direction in float64, for where a camera stands, and for what is rounded to float32
+/// once it is computed. A Vec3 converts to it implicitly; the way back rounds and is explicit. Its
+/// functions are friends, so that they are found for it alone, and a call with a Vec3 stays
+/// unambiguous.
 struct Vec3d {
   double x = 0, y = 0, z = 0;
 

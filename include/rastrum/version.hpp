@@ -6,14 +6,14 @@
 
 #include <rastrum/config.hpp>
 
-/// That of the headers.
+/// The version of the headers.
 #define RASTRUM_VERSION_MAJOR 0
 #define RASTRUM_VERSION_MINOR 1
 #define RASTRUM_VERSION_PATCH 0
 
 namespace RASTRUM_API rastrum {
 
-/// That of the library which runs: "major.minor.patch".
+/// The version of the library that runs: "major.minor.patch".
 [[nodiscard]] std::string_view version() noexcept;
 
 }  // namespace rastrum

@@ -14,16 +14,16 @@ enum class BlockOrder : std::uint8_t { row_major, morton };
 /// How `hybrid` draws small triangles: by the blocks of their boxes or by rows (paper 1, 4.2).
 enum class SmallPath : std::uint8_t { blocks, rows };
 
-/// Parameters of the rasterizers; 0 takes the rasterizer's default, which is its paper's. Sizes
-/// of bins and tiles are powers of two, a bin up to 128 px and 2 to 16 tiles across, a tile from 4
-/// px, with `binned` from 8; `grouped` has its own.
+/// Parameters of the rasterizers; 0 takes the rasterizer's default, which is its paper's. Sizes of
+/// bins and tiles are powers of two. A bin is up to 128 px and 2 to 16 tiles across, a tile from 4
+/// px, with `binned` from 8. `grouped` takes bins of 64 px and tiles of 8 px alone.
 struct Tuning {
   int bin_px = 0, tile_px = 0;
   int small_px = 0;  ///< box area up to which a triangle is small (128)
   int large_px = 0;  ///< box area from which `binned` sends a triangle through its queue (4,000)
-  Schedule schedule = Schedule::automatic;   ///< of `binned`
-  BlockOrder order = BlockOrder::row_major;  ///< in which tiles are walked
-  SmallPath small_path = SmallPath::blocks;  ///< of `hybrid`
+  Schedule schedule = Schedule::automatic;   ///< for `binned`
+  BlockOrder order = BlockOrder::row_major;  ///< the order in which tiles are walked
+  SmallPath small_path = SmallPath::blocks;  ///< for `hybrid`
 
   bool operator==(const Tuning&) const = default;
 };

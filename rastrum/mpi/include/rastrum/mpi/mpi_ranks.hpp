@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ranks of MPI: what render_parts (rastrum/ranks.hpp) needs of them. Link Rastrum::mpi, which is
-// there where CMake has found MPI.
+// The ranks of an MPI program, for render_parts (rastrum/ranks.hpp). Link Rastrum::mpi, which is
+// there if CMake has found MPI.
 #pragma once
 
 #include <exception>
@@ -16,19 +16,20 @@
 namespace RASTRUM_API rastrum {
 namespace mpi {
 
-/// The ranks of a communicator of the caller's, by a duplicate of it: neither its messages nor its
-/// error handler are touched. Made and destroyed by all its ranks together, and used by one thread
-/// of each, between MPI_Init and MPI_Finalize; that thread is the one that MPI_THREAD_FUNNELED
-/// allows to call MPI. An error that MPI reports ends the job (MPI_Abort), with a message that says
-/// what was being done: MPI 3 cannot go on without a rank.
+/// The ranks of a caller's communicator. It uses a duplicate, so neither the messages nor the error
+/// handler of the original are touched. All ranks make and destroy it together, between MPI_Init
+/// and MPI_Finalize. One thread of each uses it, the one that MPI_THREAD_FUNNELED allows to call
+/// MPI. An error that MPI reports ends the job (MPI_Abort), with a message that says what was being
+/// done: MPI 3 cannot go on without a rank.
 class MpiRanks final : public Communicator {
  public:
   /// `timeout_s`: a rank that waits longer than this for others, because one has died or hangs,
-  /// ends the job and says in which phase of which rank; 0: it waits for ever. It is to be longer
-  /// than the longest phase of a frame. `before_abort`: called before this rank ends the job, which
-  /// runs no destructor; for what is half done (io::abandon_files). Throws Error{invalid_argument}
-  /// where MPI has not begun or has ended. `shares`: whether ranks that are all of one machine
-  /// share memory (share), for the windows of which the first frame takes some milliseconds.
+  /// ends the job and says in which phase of which rank. It must be longer than the longest phase
+  /// of a frame; 0: it waits for ever. `before_abort` is called before this rank ends the job,
+  /// which runs no destructor; it is for what is half done (io::abandon_files). `shares`: whether
+  /// ranks that are all of one machine share memory (share); the first frame takes some
+  /// milliseconds for its windows. Throws Error{invalid_argument} if MPI has not begun or has
+  /// ended.
   explicit MpiRanks(MPI_Comm comm, double timeout_s = 0, Function<void()> before_abort = {},
                     bool shares = true);
   ~MpiRanks() override;
@@ -42,40 +43,40 @@ class MpiRanks final : public Communicator {
   void max_of_each(std::span<std::uint64_t> values) override;
   void broadcast(std::span<std::byte> bytes, int root) override;
   void exchange_sizes(std::span<const std::uint64_t> to, std::span<std::uint64_t> from) override;
-  /// In pairs, in pieces of at most 1 GiB: MPI 3 counts in int.
+  /// Exchanges in pairs, in pieces of at most 1 GiB, because MPI 3 counts in int.
   void exchange(std::span<const std::span<const std::byte>> to,
                 std::span<const std::span<std::byte>> from) override;
-  /// A window that the first rank holds, where all are of one machine (MPI_COMM_TYPE_SHARED); kept
-  /// as long as it is large enough. Where some rank cannot have it, none has, and nobody asks again
-  /// for as much.
+  /// A window that the first rank holds, if all are of one machine (MPI_COMM_TYPE_SHARED). It is
+  /// kept as long as it is large enough. If some rank cannot have it, none has, and nobody asks
+  /// again for as much.
   [[nodiscard]] std::span<std::uint64_t> share(std::size_t count) override;
 
  private:
-  /// Whether all ranks are of one machine, found out once.
+  /// Whether all ranks are of one machine; it is found out once.
   [[nodiscard]] bool is_one_node();
   void free_window();
   void check(int code, const char* what) const;
-  /// Does not return.
+  /// Ends the job and does not return.
   void end_job() const;
-  /// Until the requests are done.
+  /// Waits until the requests are done.
   void wait(std::span<MPI_Request> requests, const char* what) const;
 
   MPI_Comm comm_ = MPI_COMM_NULL;
   int rank_ = 0, size_ = 1;
   const int exceptions_ = std::uncaught_exceptions();
   bool shares_ = true;
-  MPI_Comm node_ = MPI_COMM_NULL;  ///< of this machine, once it was asked for
+  MPI_Comm node_ = MPI_COMM_NULL;  ///< the ranks of this machine, once it was asked for
   bool one_node_ = false;
   MPI_Win window_ = MPI_WIN_NULL;
   std::span<std::uint64_t> shared_{};
-  std::size_t too_much_ = 0;  ///< so many numbers could not be shared; 0: not yet
+  std::size_t too_much_ = 0;  ///< so many numbers could not be shared; 0: none failed yet
   double timeout_s_ = 0;
   Function<void()> before_abort_;
   std::string phase_ = "begin";
 };
 
-/// render_parts for the ranks of `comm`. `root` and the rest as there. For one picture: whoever
-/// draws many keeps MpiRanks, which duplicates the communicator once and shares memory.
+/// Calls render_parts with the ranks of `comm`. It is for one picture: a caller that draws many
+/// keeps MpiRanks, which duplicates the communicator once and shares memory.
 RanksStats render(MPI_Comm comm, Renderer& renderer, const SceneView& scene,
                   std::span<const std::uint64_t> parts, const Camera& camera,
                   const FrameOptions& frame, const Targets& targets,
