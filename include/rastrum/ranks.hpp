@@ -102,7 +102,7 @@ class LocalRanks {
   struct Traffic {
     std::uint64_t bytes = 0, messages = 0;
   };
-  /// `node`: so many ranks count as one machine. They share memory only if they are all ranks, as
+  /// `node`: so many ranks count as one machine. They share memory only if these are all, as
   /// processes would. 0: all. Throws Error{invalid_argument} unless 1 ≤ ranks ≤ 4096 and 0 ≤ node.
   explicit LocalRanks(int ranks, int node = 0);
   ~LocalRanks();

@@ -26,8 +26,8 @@ namespace terrain {
 /// nothing, as in a hole.
 enum class Tiling : std::uint8_t { repeat, mirror, clamp, none };
 
-/// The cell, in a map of `size` cells, to which coordinate `i` belongs; rounded down, also below 0.
-/// With `none` it is the cell at the edge; is_beyond() tells that nothing is there.
+/// The cell, in a map of `size` cells, to which coordinate `i` belongs; divisions are floored, not
+/// truncated. With `none` it is the cell at the edge; is_beyond() tells that nothing is there.
 [[nodiscard]] RASTRUM_HD inline std::int64_t tiled(std::int64_t i, std::int64_t size,
                                                    Tiling tiling) {
   if (static_cast<std::uint64_t>(i) < static_cast<std::uint64_t>(size)) return i;
@@ -76,8 +76,7 @@ class Terrain {
   /// The terrain of a function with its light (function_terrain, terrain_light.hpp).
   explicit Terrain(Shared<const LitFunction> function);
 
-  /// A terrain of two functors `float height(double x, double y)` and `Rgba8 color(double x, double
-  /// y)`.
+  /// A terrain of `float height(double x, double y)` and `Rgba8 color(double x, double y)`.
   template <class Height, class Color>
   [[nodiscard]] static Terrain of(Height height, Color color);
 
@@ -174,8 +173,7 @@ struct TerrainOptions {
   /// rows, 90°, 10 above the ground, steps of 1, 1.005, …. Field of view, scale, steps, projection,
   /// filter and ground clearance must then stand at their defaults, and tiling `none` is refused.
   bool classic = false;
-  double fov_rad =
-      std::numbers::pi / 2;  ///< across the width; below π for planar, up to 2π for cylindrical
+  double fov_rad = std::numbers::pi / 2;  ///< across; below π for planar, up to 2π for cylindrical
   /// Rows that a height of 1 takes at distance 1, up to 1e7; 0: as many as columns that a width of
   /// 1 takes in the picture's middle.
   double scale_px = 0;
@@ -223,7 +221,7 @@ struct TerrainStats {
                                     ///< the targets lie in memory
   std::uint64_t visible = 0;        ///< samples that were drawn
   std::uint64_t peak_bytes = 0;     ///< scratch and pyramids, beyond the terrain and the images
-  std::uint64_t device_bytes = 0;   ///< of a GPU's memory: for the map, the images, scratch
+  std::uint64_t device_bytes = 0;   ///< a GPU's memory for the map, the images, scratch
   Device device = Device::threads;  ///< the one that drew
   std::string device_why;  ///< why Device::automatic took it, or why it is not the one asked for
   std::vector<StageTime> stages;

@@ -33,10 +33,10 @@ struct ShadowOptions {
 };
 
 /// 1 where the ray from the middle of a cell's top to the sun meets a higher cell, else 0: exact,
-/// the same on every device. Holes hide nothing. Cost: two lines of a sweep for each cell and each
-/// column of the map, further columns where the longest shadow reaches beyond the map's edge, and a
-/// traversal for the few cells that the sweep cannot decide. Throws Error{invalid_argument} for a
-/// sun that is not finite or above 90°.
+/// the same on every device. Holes hide nothing. Cost: a sweep over the map's columns, O(1) a cell;
+/// further columns where the longest shadow reaches beyond the map's edge; and a traversal for the
+/// few cells that the sweep cannot decide. Throws Error{invalid_argument} for a sun that is not
+/// finite or above 90°.
 [[nodiscard]] Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun,
                                                 const ShadowOptions& options = {});
 
@@ -72,8 +72,8 @@ enum class Shadows : std::uint8_t {
 struct Light {
   Sun sun{};
   Shadows shadows = Shadows::none;
-  /// Slopes get ambient + (1 − ambient) · max(0, cosine between normal and sun). For colours that
-  /// are painted without light; satellite pictures have it.
+  /// Whether slopes get ambient + (1 − ambient) · max(0, cosine between normal and sun). It is for
+  /// colours that are painted without light; satellite pictures have light in them.
   bool hill_shading = false;
   float ambient = 0.45F;           ///< share of a colour where no sun is, [0, 1]
   double sun_radius_deg = 0.2666;  ///< for `soft`
@@ -90,8 +90,9 @@ struct Light {
 [[nodiscard]] Rgba8 sky_in(Rgba8 by_day, const Sun& sun) noexcept;
 
 /// The colours of a map in this light, opaque, as fine as the finer of heights and colours; the
-/// others are repeated, or read as Light::smooth says. Empty colours become grey by height. Cost:
-/// that of the shadows, and O(cells). Throws Error{invalid_argument} for a light out of range.
+/// others are repeated, or read as Light::smooth says. Empty colours become hues of the heights,
+/// from lowland to snow. Cost: that of the shadows, and O(cells). Throws Error{invalid_argument}
+/// for a light out of range.
 [[nodiscard]] Image<Rgba8> lit_colors(const HeightMap& map, const Light& light,
                                       const ShadowOptions& options = {});
 
@@ -113,11 +114,11 @@ inline constexpr int kMaxFiner = 16;
 using HeightFunction =
     Function<void(const double* x, const double* y, std::size_t n, float* heights)>;
 
-/// The terrain of a function in this light: height_color between `low` and `high`, with slopes by
-/// central differences. The shadows are those of a march from each visible sample (paper 3's
-/// generate_shadowmap with a function), because there are no cells to traverse: `sharp` is dark
-/// where any sample hides the sun, `soft` where more and more do. `colors` of the heights take the
-/// place of height_color; a device then leaves the terrain to the CPU.
+/// The terrain of a function in this light. Its colours are hues from lowland at `low` to snow at
+/// `high` or, if they are given, `colors` of the heights; a device leaves a terrain with these to
+/// the CPU. Slopes are central differences. The shadows are those of a march from each visible
+/// sample (paper 3's generate_shadowmap with a function), because there are no cells to traverse:
+/// `sharp` is dark where any sample hides the sun, `soft` where more and more do.
 [[nodiscard]] Terrain function_terrain(HeightFunction function, double low, double high,
                                        const Light& light, std::optional<ScalarColors> colors = {});
 
