@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A robot's camera in a loop sees a pot and a ball on waves: depth in metres and a mask of
-// instances, from OpenCV's K and a pose. Renderer, images and views stay; the numbers in the arrays
-// change.
+// instances, from OpenCV's K and a pose. Renderer, images and views stay; the arrays change.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

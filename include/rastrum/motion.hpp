@@ -33,8 +33,8 @@ struct Motion {
 
 /// Poses what moves in `scene` as it is `seconds` into animation `animation` of its file, counted
 /// from 0. Files that have fewer animations are posed at rest. An animation that has ended begins
-/// again: its moment is `seconds` less whole durations, in (0, duration]. For `seconds` ≤ 0 it is
-/// the start.
+/// again: its moment is `seconds` less whole durations, in (0, duration]. `seconds` ≤ 0 is its
+/// start.
 ///
 /// It writes matrices of instances, cameras, lights, and the positions and normals of meshes with
 /// skins or morph targets, in float64 and rounded once: the same bits on every machine. Such a mesh
@@ -43,8 +43,8 @@ struct Motion {
 ///
 /// Returns the indices of the meshes that were written, rising. Cost: O(nodes + tracks · log keys)
 /// and, for each vertex of these meshes, its joints and the targets whose weight is not 0. Throws
-/// Error{invalid_argument} if `seconds` is not finite, or if something moves but no file has
-/// animation `animation`.
+/// Error{invalid_argument} if `seconds` is not finite, or if the scene moves but no file has this
+/// animation.
 std::vector<std::uint32_t> pose(Scene& scene, double seconds, std::size_t animation = 0);
 
 /// Poses the scene at rest, without an animation: nodes and weights as they stand in the files. It

@@ -30,8 +30,7 @@ namespace RASTRUM_API rastrum {
 struct GroundLights {
   std::vector<Light> lights{};
   /// How a cell's share of each directional light is found. `accumulated` leaves √(1 / (1 + n)) of
-  /// the light, n as in terrain::Shadows. Lights with a place and lights from all around cast no
-  /// shadows on ground.
+  /// the light, n as in terrain::Shadows. Lights with a place or from all around cast no shadows.
   terrain::Shadows shadows = terrain::Shadows::none;
   double sun_radius_deg = 0.2666;  ///< of directional lights, for `soft`
   terrain::March march{};          ///< for `accumulated`, and for all shadows of functions
@@ -97,8 +96,7 @@ struct GroundNumbers {
 void check_ground_annotations(const Annotations& annotations, const GroundNumbers& numbers);
 /// Draws annotations over a picture of a terrain, in this order: the box (draw_terrain_bounds), the
 /// axes (draw_terrain_axes), the bar of the heights, the words. `camera` is the picture's
-/// (TerrainStats::camera). Throws as check_ground_annotations, draw_terrain_bounds and
-/// draw_terrain_axes.
+/// (TerrainStats::camera). Throws as check_ground_annotations and as these two.
 void draw_ground_annotations(const Annotations& annotations, const terrain::Terrain& ground,
                              const GroundNumbers& numbers, const terrain::TerrainOptions& options,
                              const terrain::TerrainCamera& camera,
@@ -107,13 +105,12 @@ void draw_ground_annotations(const Annotations& annotations, const terrain::Terr
 /// Meshes and sprites on a terrain, in its world.
 struct TerrainScene {
   SceneView scene{};
-  /// Indices of billboards: instances that turn about their own +y until their +z faces the
-  /// picture's plane.
+  /// Indices of billboards: instances that turn about their +y until +z faces the picture's plane.
   std::span<const std::size_t> facing{};
 };
 
-/// Draws meshes and sprites on terrains. Keeps threads and scratch between frames. Threads and
-/// stopping: as Renderer.
+/// Draws meshes and sprites on terrains; keeps threads and scratch. Threads and stopping: as
+/// Renderer.
 class SceneOnTerrain {
  public:
   /// Surfaces nearer than this, in cells along the view, are cut off.

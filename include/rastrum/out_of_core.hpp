@@ -44,8 +44,7 @@ struct OutOfCoreOptions {
   /// Whether `prepare` looks at the triangles around points (vertex_normals, crease_normals). Then
   /// it is also given the triangles that share a position with one that is seen.
   bool neighbours = false;
-  /// Called now and then from the caller's thread with what is being done, and how much of it is
-  /// done.
+  /// Called now and then from the caller's thread: what is being done, and how much of it is.
   Function<void(std::string_view what, std::uint64_t done, std::uint64_t all)> progress{};
   RendererOptions renderer{};  ///< its memory limit is not used
   /// For a picture that is not held whole, as in RanksOptions: how many rows are drawn at once,
@@ -75,8 +74,7 @@ class OutOfCoreFile {
  public:
   /// Looks at the header. Throws Error as io::read_scene, Error{unsupported} that says why the file
   /// cannot be drawn this way, and Error{out_of_memory} if a GLB's JSON alone takes more than
-  /// `memory_limit`. The limit of a picture (OutOfCoreOptions) counts that JSON, too, but is known
-  /// later.
+  /// `memory_limit`. OutOfCoreOptions::memory_limit counts it, too, but is known later.
   explicit OutOfCoreFile(PathView file,
                          std::uint64_t memory_limit = std::numeric_limits<std::uint64_t>::max());
   ~OutOfCoreFile();
@@ -90,8 +88,7 @@ class OutOfCoreFile {
   /// About how much memory its mesh would take; if you have more than that, read the file instead.
   [[nodiscard]] std::uint64_t bytes_in_memory() const;
 
-  /// The scene that `prepare` makes of one triangle of each mesh: it shows the materials, for
-  /// instance.
+  /// The scene that `prepare` makes of one triangle of each mesh, with the materials.
   [[nodiscard]] Scene sample(FunctionRef<void(Scene&)> prepare) const;
 
   /// Draws what a Renderer draws of the scene of io::read_scene after `prepare`, bit for bit, ids

@@ -113,8 +113,8 @@ struct TextExtent {
 /// Throws Error{invalid_argument} for a size out of range.
 [[nodiscard]] TextExtent measure_text(std::string_view text, double size_px);
 
-/// The code points of `text` that are drawn as boxes, each once, in order; U+FFFD stands for what
-/// is no UTF-8.
+/// The code points of `text` that are drawn as boxes, each once, in order; U+FFFD for other than
+/// UTF-8.
 [[nodiscard]] std::vector<char32_t> missing_glyphs(std::string_view text);
 
 // Numbers.
@@ -163,8 +163,7 @@ struct ScalarBar {
   std::vector<std::string> categories{};
   Side side = Side::right;
 };
-/// The bar of `colors`, which are made of `mapping`; without a title, a unit and a swatch for
-/// `nan`.
+/// The bar of `colors`, which are made of `mapping`; without title, unit and swatch for `nan`.
 [[nodiscard]] ScalarBar scalar_bar(const ScalarMapping& mapping, const ScalarColors& colors);
 /// Throws Error{invalid_argument} for a bar without colours, for a range that is not finite, upside
 /// down or, if logarithmic, not above 0, and for categories that are not as many as colours.
@@ -174,7 +173,7 @@ void draw_scalar_bar(const Canvas& canvas, const ScalarBar& bar, const Look& loo
 using AxisNames = std::array<std::string_view, 3>;
 inline constexpr AxisNames kAxisNames{"x", "y", "z"};
 
-/// Draws arrows along x, y and z in a corner, red, green and blue. Arrows that point away lie
+/// Draws arrows along x, y and z in a corner, red, green and blue; those that point away lie
 /// behind.
 void draw_axes(const Canvas& canvas, const Camera& camera, Corner corner = Corner::bottom_left,
                const Look& look = {}, const AxisNames& names = kAxisNames);

@@ -12,8 +12,7 @@
 namespace RASTRUM_API rastrum {
 
 /// A view of a file's name: of text (`const char*`, std::string, std::string_view) or of a
-/// std::filesystem::path. It must not outlive what it views, so take it as a parameter and do not
-/// keep it.
+/// std::filesystem::path. It must not outlive that: take it as a parameter, do not keep it.
 class PathView {
  public:
   template <class Text>

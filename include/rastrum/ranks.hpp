@@ -40,8 +40,7 @@ class Communicator {
   virtual void broadcast(std::span<std::byte> bytes, int root) = 0;
   /// Sends a number to each rank and gets one from each; `to` and `from` have size() numbers.
   virtual void exchange_sizes(std::span<const std::uint64_t> to, std::span<std::uint64_t> from) = 0;
-  /// Sends a block to each rank and gets one from each, of the sizes that were exchanged. Blocks
-  /// may be empty.
+  /// Sends a block to each rank and gets one from each, of the sizes that were exchanged, also 0.
   virtual void exchange(std::span<const std::span<const std::byte>> to,
                         std::span<const std::span<std::byte>> from) = 0;
   /// max() of each number at once; all ranks give as many.
@@ -55,8 +54,7 @@ class Communicator {
   /// All ranks call it together, with the same `count`.
   [[nodiscard]] virtual std::span<std::uint64_t> share(std::size_t /*count*/) { return {}; }
   /// Whether all ranks are threads of one process, so that each can read and write another's
-  /// memory; the same on all. Then a rank draws into the root's picture, where it would send
-  /// otherwise.
+  /// memory; the same on all. Then a rank draws into the root's picture and sends none.
   [[nodiscard]] virtual bool is_one_process() const { return false; }
 };
 
@@ -85,8 +83,7 @@ class FitOfRanks final : public FitRanks {
 /// the same index. Throws Error{invalid_argument} for what ScalarColors refuses. O(scalars).
 [[nodiscard]] std::vector<ScalarMapping> mappings_of_ranks(Communicator& ranks,
                                                            const SceneView& scene);
-/// The box about the vertices that primitives of all ranks use: bounds() of the whole scene.
-/// O(vertices).
+/// The box about the vertices in use of all ranks: bounds() of the whole scene. O(vertices).
 [[nodiscard]] Bounds bounds_of_ranks(Communicator& ranks, const SceneView& scene);
 /// The lights of all ranks, those of rank 0 first. Throws Error{unsupported} for an environment.
 [[nodiscard]] std::vector<Light> lights_of_ranks(Communicator& ranks, std::span<const Light> own);
@@ -109,8 +106,7 @@ class LocalRanks {
   /// Calls f(communicator) on the thread of each rank, which is kept, and waits for all. If f
   /// throws on a rank, or returns while others wait for that rank, the others get an Error that
   /// names it, and run() throws the exception of the first rank that left. Throws
-  /// Error{invalid_argument} if it is already running, also from within f. Traffic counts from 0 in
-  /// each run.
+  /// Error{invalid_argument} while it runs, also from within f. Traffic counts from 0.
   void run(FunctionRef<void(Communicator&)> f);
   [[nodiscard]] std::span<const Traffic> traffic() const;
 

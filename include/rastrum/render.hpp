@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Renders a scene: scene + camera + options → image. Renderer::draw takes functions of your own
-// (program.hpp).
+// Renders a scene: scene + camera + options → image. Draws with functions of your own: program.hpp.
 #pragma once
 
 #include <cstdint>
@@ -104,16 +103,14 @@ struct RASTRUM_INSIDE RendererAccess;  // render/access.hpp: renderers that draw
 /// Threads: several threads may call its functions at once. Each call is a frame, and frames take
 /// turns; with a renderer for each thread they are drawn at the same time. A caller's own vertex,
 /// shading or test function may not call the renderer that calls it: that throws
-/// Error{invalid_argument}. Until the frame ends, the caller leaves unchanged all that it reads and
-/// fills.
+/// Error{invalid_argument}. The caller leaves unchanged all that a frame in work reads and fills.
 ///
 /// Stopping: once any thread requests a stop of `stop`, the frame throws Stopped (stop.hpp) after a
 /// bounded amount of work. A frame that waits for its turn throws when that comes. The targets then
 /// hold parts of the picture; the renderer remains usable.
 class Renderer {
  public:
-  /// Throws Error{invalid_argument} for a number out of range, Error{no_device} for a device that
-  /// is not there.
+  /// Throws Error{invalid_argument} for a number out of range, Error{no_device} if there is none.
   explicit Renderer(RendererOptions options = {});
   ~Renderer();
   Renderer(Renderer&&) noexcept;

@@ -96,8 +96,7 @@ struct MeshScalarsView {
   [[nodiscard]] RASTRUM_HD bool empty() const { return values.empty(); }
 };
 
-/// Numbers that a geometry owns. Other geometries than meshes have one for each position, sphere or
-/// disc.
+/// Numbers that a geometry owns. Geometries other than meshes have one a position, sphere or disc.
 struct NamedScalars {
   std::string name{};
   std::vector<double> values{};

@@ -80,8 +80,7 @@ using GeometryView =
     std::variant<MeshView, PointsView, LinesView, SpheresView, CylindersView, TubesView, DiscsView>;
 
 /// Refers to a view that lies elsewhere. Its owner keeps the view there, and a GeometryView of one
-/// kind, while this is in use. Any number of instances may refer to one view. A temporary does not
-/// compile.
+/// kind, while this is in use. Many instances may refer to one view. A temporary does not compile.
 class GeometryRef {
   using Pointer =
       std::variant<const MeshView*, const PointsView*, const LinesView*, const SpheresView*,
@@ -208,14 +207,13 @@ struct Scene {
   /// and scalar mappings are shifted. If only one of the two has materials, the other is given
   /// plain ones.
   void append(Scene other);
-  /// Moves everything but the cameras: multiplies the matrices of instances by `to_world` from the
-  /// left, and moves lights.
+  /// Moves everything but the cameras: puts `to_world` before the matrices of instances, and moves
+  /// lights.
   void place(const Mat4d& to_world);
   /// The number of triangles in the meshes of all instances. Throws Error{invalid_argument} for an
   /// instance whose mesh or geometry does not exist.
   [[nodiscard]] std::uint64_t triangle_count() const;
-  /// The number of all that have an id: these triangles, and the primitives of other geometries.
-  /// Throws likewise.
+  /// The number of these triangles and other primitives: all that have an id. Throws likewise.
   [[nodiscard]] std::uint64_t primitive_count() const;
 };
 

@@ -71,12 +71,10 @@ namespace shapes {
 /// `hairball?strands=100&width=0.01`. Throws Error{invalid_argument} that names the unknown shape
 /// or parameter and lists the known ones.
 [[nodiscard]] Scene scene_from_spec(std::string_view spec);
-/// The mesh of scene_from_spec. Throws likewise, and Error{invalid_argument} for a shape that is no
-/// mesh.
+/// The mesh of scene_from_spec. Throws likewise, and for a shape that is no mesh.
 [[nodiscard]] Mesh from_spec(std::string_view spec);
 
-/// The name, the parameters with their defaults, and a line of description of a shape, for
-/// `--help`.
+/// Name, parameters with their defaults and a line of description of a shape, for `--help`.
 struct ShapeInfo {
   std::string name, parameters, description;
 };

@@ -7,7 +7,7 @@
 //
 // Cost: without a scope a look at a thread-local pointer for each loop and, in bodies that ask by
 // themselves, for each question; with one an atomic read for each range.
-// Source: C++20's std::stop_token; it is found through the thread, not passed, as in oneTBB's
+// Source: C++20's std::stop_token. It is found through the thread, not passed, as in oneTBB's
 // task_group_context.
 #pragma once
 
@@ -30,9 +30,8 @@ concept AsksToStop = requires(const T& token) {
   { token.stop_requested() } -> std::convertible_to<bool>;
 };
 
-/// A view of something that asks to stop, which must outlive it; by default a view of nothing.
-/// Calls take it as a parameter: give them the std::stop_token itself, and include <stop_token>
-/// yourself.
+/// A view of something that asks to stop, which must outlive it; by default a view of nothing. Give
+/// calls the std::stop_token itself, and include <stop_token> yourself.
 class StopToken {
  public:
   StopToken() = default;
@@ -57,8 +56,7 @@ class StopToken {
 /// out. Whatever is between two loops runs to its end. Scopes nest; the inner one counts.
 class StopScope {
  public:
-  /// `token` must outlive the scope. If nobody can stop it, the scope around this one stays in
-  /// force.
+  /// `token` must outlive the scope. If it cannot be stopped, the outer scope stays in force.
   template <AsksToStop T>
   explicit StopScope(const T& token) noexcept
       : token_(token), outer_(enter(token_.stop_possible() ? &token_ : current())) {}

@@ -88,8 +88,8 @@ struct DiscsView {
   [[nodiscard]] std::size_t size() const { return centers.size(); }
 };
 
-// Surfaces that own their arrays, as readers and procedural shapes return them. The views above say
-// what each array is.
+// Surfaces that own their arrays, as readers and procedural shapes return them. The views say what
+// each array is.
 
 struct Spheres {
   std::string name{};

@@ -64,8 +64,8 @@ class Surface {
 
 class RASTRUM_INSIDE LitFunction;
 
-/// A terrain to look at. It is cheap to copy (a move is a copy), never changes, and is safe to
-/// share between threads.
+/// A terrain to look at. It never changes, is cheap to copy (a move is a copy), and threads may
+/// share it.
 class Terrain {
  public:
   Terrain(const Terrain&) = default;

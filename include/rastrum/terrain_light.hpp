@@ -79,8 +79,7 @@ struct Light {
   double sun_radius_deg = 0.2666;  ///< for `soft`
   March march{};                   ///< for `accumulated`
   /// If colours and heights differ in size, the coarser ones are read between the centres of their
-  /// cells, as MapFilter::bilinear reads heights; else each cell has one light, each texel one
-  /// colour.
+  /// cells, as MapFilter::bilinear reads heights; else a cell has one light, a texel one colour.
   bool smooth = false;
 };
 

@@ -73,8 +73,7 @@ inline Quaternion normalize(const Quaternion& q) {
   return {q.w / length, q.x / length, q.y / length, q.z / length};
 }
 
-/// The right-handed rotation about `axis`, which need not be of unit length; the identity where it
-/// is 0.
+/// The right-handed rotation about `axis`, of any length; the identity where it is 0.
 [[nodiscard]] Quaternion rotation_about(Vec3d axis, double angle_rad);
 
 /// The matrix of the rotation `q`, which must be of unit length.
@@ -95,8 +94,7 @@ constexpr Mat4d rotation(const Quaternion& q) {
   return r;
 }
 
-/// The rotation on the way from a (t = 0) to b (t = 1) at constant angular speed, the shorter way
-/// round.
+/// The rotation between a (t = 0) and b (t = 1), at constant angular speed, the shorter way round.
 [[nodiscard]] Quaternion slerp(const Quaternion& a, const Quaternion& b, double t);
 
 }  // namespace rastrum

@@ -136,8 +136,7 @@ RASTRUM_HD inline bool is_finite(Vec3 a) {
 
 /// A point or direction in float64, for where a camera stands, and for what is computed before it
 /// is rounded to float32 once. A Vec3 converts to it implicitly; the way back rounds and is
-/// explicit. Its functions are friends, so that they are found for it alone, and a call with a Vec3
-/// stays unambiguous.
+/// explicit. Its functions are friends, found for it alone, so calls with a Vec3 stay unambiguous.
 struct Vec3d {
   double x = 0, y = 0, z = 0;
 

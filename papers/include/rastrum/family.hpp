@@ -18,14 +18,12 @@ namespace family {
 struct AxisInfo {
   std::string name, description;
 };
-/// The rasterizers: first `reference`, the plain one, then those that combine with every
-/// visibility.
+/// The rasterizers: `reference`, the plain one, then those that combine with every visibility.
 [[nodiscard]] const std::vector<AxisInfo>& rasterizer_axis();
 /// The visibilities; the first is the default.
 [[nodiscard]] const std::vector<AxisInfo>& visibility_axis();
 
-/// A point of the table: names on its two axes. On a device there is the rasterizer `by-size`, too,
-/// the default.
+/// A point of the table: names on its two axes. On a device there is `by-size`, too, the default.
 struct Row {
   std::string rasterizer = "auto";
   std::string visibility = "auto";

@@ -28,8 +28,7 @@ class MpiRanks final : public Communicator {
   /// of a frame; 0: it waits for ever. `before_abort` is called before this rank ends the job,
   /// which runs no destructor; it is for what is half done (io::abandon_files). `shares`: whether
   /// ranks that are all of one machine share memory (share); the first frame takes some
-  /// milliseconds for its windows. Throws Error{invalid_argument} if MPI has not begun or has
-  /// ended.
+  /// milliseconds for its windows. Throws Error{invalid_argument} unless MPI runs.
   explicit MpiRanks(MPI_Comm comm, double timeout_s = 0, Function<void()> before_abort = {},
                     bool shares = true);
   ~MpiRanks() override;
