@@ -98,9 +98,9 @@ class OutOfCoreFile {
   /// Cost: the file is read once to find what is seen and once to draw it, and twice more with
   /// `neighbours`. Several samples or translucent surfaces that are drawn in pieces read it once
   /// more for each piece. Throws as Renderer::render; Error{unsupported} for what needs all
-  /// triangles at once: shadows, Shader::id, CUDA; Error{out_of_memory} if the layers of one pixel
-  /// do not fit, before the other pixels are drawn, with the limit that would do; Error{bad_format}
-  /// as io::read_scene for an error in the file, before a target is touched.
+  /// triangles at once: shadows, Shader::id, CUDA; Error{out_of_memory}, with the limit that would
+  /// do, if even the layers of one pixel do not fit, or with Shader::depth the whole picture;
+  /// Error{bad_format} as io::read_scene for an error in the file, before a target is touched.
   OutOfCoreStats render(const Camera& camera, const FrameOptions& frame, const Targets& targets,
                         const OutOfCoreOptions& options, StopToken stop = {}) const;
 

@@ -41,8 +41,8 @@ struct ShadowOptions {
                                                 const ShadowOptions& options = {});
 
 /// How much of the sun's disc each cell sees, 0 to 255: the mean of sharp_shadows over 16 points
-/// spread evenly over a disc of angular radius `radius_deg` (the real one has 0.2666°).
-/// Cost: 16 × sharp_shadows.
+/// spread evenly over a disc of angular radius `radius_deg`, 0 to 45° (the real one has 0.2666°).
+/// Cost: 16 × sharp_shadows. Throws Error{invalid_argument} as that, and for a radius out of range.
 [[nodiscard]] Image<std::uint8_t> soft_light(ImageView<const float> heights, const Sun& sun,
                                              double radius_deg, const ShadowOptions& options = {});
 
