@@ -28,7 +28,7 @@ typedef int rastrum_status;
 enum {
   RASTRUM_OK = 0,
   RASTRUM_INVALID_ARGUMENT = 1,  ///< an argument or array that is wrong, a null handle
-  RASTRUM_NOT_FOUND = 2,         ///< a name that does not exist
+  RASTRUM_NOT_FOUND = 2,         ///< a target or a colour map of that name does not exist
   RASTRUM_IO = 3,
   RASTRUM_BAD_FORMAT = 4,
   RASTRUM_UNSUPPORTED = 5,  ///< valid, but outside of what Rastrum does
@@ -159,7 +159,8 @@ rastrum_status rastrum_camera_set_perspective(rastrum_camera* camera, float fov_
 rastrum_status rastrum_camera_set_orthographic(rastrum_camera* camera, float height);
 /// Distances along the view, near < far. `far_plane` may be infinite with perspective.
 rastrum_status rastrum_camera_set_planes(rastrum_camera* camera, float near_plane, float far_plane);
-/// Moves the camera and sets planes and height, so that the scene fills W x H pixels.
+/// Moves the camera along its view, or that of its matrix, and sets planes and height, so that the
+/// scene fills W x H pixels. The camera has no matrix then.
 rastrum_status rastrum_camera_fit(rastrum_camera* camera, const rastrum_scene* scene, int width,
                                   int height);
 /// The matrix from world to clip space, row by row, +y up. `depth`: z / w at near and far plane.

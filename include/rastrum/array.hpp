@@ -142,12 +142,17 @@ template <class E, class C, std::size_t... i>
 consteval bool is_made_of(std::index_sequence<i...>) {
   return std::is_constructible_v<E, decltype(static_cast<void>(i), std::declval<C>())...>;
 }
+// Members of type C in the order x, y, z, w; only a standard layout shows where they lie.
 template <class E, class C>
-concept HasXY = std::same_as<decltype(E::x), C> && std::same_as<decltype(E::y), C>;
+concept HasXY = std::is_standard_layout_v<E> && std::same_as<decltype(E::x), C> &&
+    std::same_as<decltype(E::y), C> && offsetof(E, y)
+== sizeof(C);
 template <class E, class C>
-concept HasZ = std::same_as<decltype(E::z), C>;
+concept HasZ = std::same_as<decltype(E::z), C> && offsetof(E, z)
+== 2 * sizeof(C);
 template <class E, class C>
-concept HasW = std::same_as<decltype(E::w), C>;
+concept HasW = std::same_as<decltype(E::w), C> && offsetof(E, w)
+== 3 * sizeof(C);
 template <class E, class C, std::size_t n>
 concept HasMembers = HasXY<E, C> &&
     (n == 2 || (n == 3 && HasZ<E, C>) || (n == 4 && HasZ<E, C> && HasW<E, C>));

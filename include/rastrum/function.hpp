@@ -3,6 +3,7 @@
 // <functional>, which has the second, takes longer to compile than most of what includes this.
 #pragma once
 
+#include <cstddef>
 #include <type_traits>
 #include <utility>
 
@@ -22,21 +23,27 @@ template <class R, class... Args>
 class FunctionRef<R(Args...)> {
  public:
   FunctionRef() = default;
+  FunctionRef(std::nullptr_t) {}
   template <class F>
   requires(!std::is_same_v<std::remove_cvref_t<F>, FunctionRef> &&
+           !std::is_member_pointer_v<std::remove_cvref_t<F>> &&
            std::is_invocable_r_v<R, F&, Args...>) FunctionRef(F&& f)
       : call_(&call<std::remove_reference_t<F>>) {
     if constexpr (std::is_function_v<std::remove_reference_t<F>>)
       function_ = reinterpret_cast<void (*)()>(&f);
     else
       object_ = &f;
-    // An empty std::function is none.
-    if constexpr (requires { f.operator bool(); })
+    // An empty std::function is none, and neither is a null pointer one.
+    if constexpr (requires { f.operator bool(); } || std::is_pointer_v<std::remove_cvref_t<F>>)
       if (!f) call_ = nullptr;
   }
 
   [[nodiscard]] explicit operator bool() const { return call_ != nullptr; }
-  R operator()(Args... args) const { return call_(*this, std::forward<Args>(args)...); }
+  /// Throws Error{invalid_argument} where there is no function.
+  R operator()(Args... args) const {
+    if (call_ == nullptr) held_detail::throw_no_function();
+    return call_(*this, std::forward<Args>(args)...);
+  }
 
  private:
   template <class F>
@@ -55,13 +62,18 @@ class FunctionRef<R(Args...)> {
   };
 };
 
-/// Holds a copy of anything that can be called as R(Args…). Copies of a Function share it.
+/// Holds a copy of anything that can be called as R(Args…). Copies of a Function share it, and a
+/// move is a copy.
 template <class R, class... Args>
 class Function<R(Args...)> {
  public:
   Function() = default;
+  Function(std::nullptr_t) {}
+  Function(const Function&) = default;
+  Function& operator=(const Function&) = default;
   template <class F>
   requires(!std::is_same_v<std::remove_cvref_t<F>, Function> &&
+           !std::is_member_pointer_v<std::decay_t<F>> &&
            std::is_invocable_r_v<R, std::decay_t<F>&, Args...>) Function(F&& f)
       : Function(new Copy<std::decay_t<F>>(std::forward<F>(f))) {}
 

@@ -21,26 +21,25 @@ struct RASTRUM_INSIDE Count;
 void join(Count* count) noexcept;
 void leave(Count* count) noexcept;
 
-/// Whether a P points to an object, as a std::shared_ptr does; Releases: and can hand it over, as a
-/// std::unique_ptr can.
+/// Throws Error{invalid_argument}.
+[[noreturn]] void throw_no_function();
+
+/// Whether a P points to an object, as std::unique_ptr and std::shared_ptr do.
 template <class P, class T>
 concept PointsTo = requires(P& owner) {
   { owner.get() } -> std::convertible_to<T*>;
 };
-template <class P, class T>
-concept Releases = PointsTo<P, T> && requires(P& owner) {
-  owner.release();
-};
 }  // namespace held_detail
 
-/// Owns an object, or null. `T` must be complete where this is destroyed.
+/// Owns an object, which `delete` ends, or null. `T` must be complete where this is destroyed.
 template <class T>
 class Owner {
  public:
   Owner() = default;
   Owner(std::nullptr_t) {}
   explicit Owner(T* object) : object_(object) {}
-  template <held_detail::Releases<T> P>
+  template <held_detail::PointsTo<T> P>
+  requires requires(P& owner) { owner.release(); }
   Owner(P owner) : object_(owner.release()) {}
   Owner(Owner&& other) noexcept : object_(std::exchange(other.object_, nullptr)) {}
   Owner& operator=(Owner&& other) noexcept {
@@ -71,17 +70,11 @@ template <class T>
 class Shared {
  public:
   Shared() = default;
-  template <held_detail::Releases<T> P>
-  Shared(P owner) {
-    if (owner.get() == nullptr) return;
-    count_ = held_detail::first_of([](const void* object) { delete static_cast<const T*>(object); },
-                                   owner.get());
-    object_ = owner.release();
-  }
+  /// Keeps `pointer`, which ends the object in its own way.
   template <held_detail::PointsTo<T> P>
-  requires(!held_detail::Releases<P, T>) Shared(P pointer) {
+  Shared(P pointer) {
     if (pointer.get() == nullptr) return;
-    Owner<const P> kept(new P(pointer));
+    Owner<const P> kept(new P(std::move(pointer)));
     count_ = held_detail::first_of([](const void* object) { delete static_cast<const P*>(object); },
                                    kept.get());
     object_ = kept.release()->get();

@@ -96,7 +96,8 @@ class GeometryRef {
   GeometryRef(const GeometryView& view)
       : view_(std::visit([](const auto& v) -> Pointer { return &v; }, view)) {}
   template <class View>
-  GeometryRef(const View&& temporary) = delete;
+  requires(is_kind<View> || std::is_same_v<View, GeometryView>) GeometryRef(const View&& temporary)
+  = delete;
 
   /// The view; null if it is of another kind.
   template <class View>

@@ -24,7 +24,7 @@ class Stopped final : public Error {
 };
 
 /// A type that can ask to stop: std::stop_token, std::stop_source or a class of one's own. Several
-/// threads call stop_requested() at once.
+/// threads call stop_requested() at once; it must not throw.
 template <class T>
 concept AsksToStop = requires(const T& token) {
   { token.stop_requested() } -> std::convertible_to<bool>;

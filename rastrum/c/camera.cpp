@@ -75,8 +75,10 @@ rastrum_status rastrum_camera_set_planes(rastrum_camera* camera, float near_plan
 
 rastrum_status rastrum_camera_fit(rastrum_camera* camera, const rastrum_scene* scene, int width,
                                   int height) {
-  return with_lens(
-      camera, [&](Camera& c) { c = fit_picture(at(scene, "the scene").view(), c, width, height); });
+  return guarded([&] {
+    Camera& c = at(camera, "the camera").camera;
+    c = fit_picture(at(scene, "the scene").view(), c, width, height);
+  });
 }
 
 rastrum_status rastrum_camera_set_matrix(rastrum_camera* camera, const double world_to_clip[16],

@@ -40,6 +40,7 @@ View view_of(const rastrum_array& a, int channels = 1) {
   if (a.data == nullptr) array_detail::refuse_null(a.count);
   const auto type = to_enum<NumberType>(a.type);
   check_enum(type, NumberType::int64, "array: its type");
+  require(a.channels >= 0, "array: ", a.channels, " channels");
   if (a.channels > 0) channels = a.channels;
   const std::size_t value = bytes_of(type) * static_cast<std::size_t>(channels);
   const std::ptrdiff_t stride =

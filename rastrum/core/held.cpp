@@ -14,6 +14,10 @@ void throw_moved_from(const char* name) {
                   " was moved from; use the one that it was moved to, or make a new one"));
 }
 
+void throw_no_function() {
+  throw Error(Errc::invalid_argument, "a function is called that is none; give one");
+}
+
 struct Count {
   void (*destroy)(const void* object);
   const void* object;

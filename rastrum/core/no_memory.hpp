@@ -16,8 +16,9 @@ auto in_memory(const F& f) {
     return f();
   } catch (const std::bad_alloc&) {
     throw Error(Errc::out_of_memory,
-                "there is not enough memory; smaller pictures need less, and a "
-                "RendererOptions::memory_limit draws in pieces that fit");
+                "there is not enough memory; a smaller picture needs less, and so does a memory "
+                "limit, by which it is drawn in pieces (RendererOptions::memory_limit, "
+                "--memory-limit)");
   }
 }
 

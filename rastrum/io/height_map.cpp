@@ -50,9 +50,20 @@ bool ends_at_edge(PathView file) {
   return extension == ".dem" || extension == ".tif" || extension == ".tiff";
 }
 
-HeightGrid decode_heights(std::span<const std::byte> bytes, std::string_view format,
-                          const std::string& name, RawSize raw, const ReadOptions& options) {
-  const FloatScope floats;
+namespace {
+
+/// Returns f(); what `name` is stands in the error of memory that is not there.
+template <class F>
+HeightGrid read_in_memory(const std::string& name, const F& f) {
+  try {
+    return f();
+  } catch (const std::bad_alloc&) {
+    throw Error(Errc::out_of_memory, name + ": there is not enough memory to read it");
+  }
+}
+
+HeightGrid decode(std::span<const std::byte> bytes, std::string_view format,
+                  const std::string& name, RawSize raw, const ReadOptions& options) {
   if (format.starts_with('.')) format.remove_prefix(1);
   const std::string kind = lower(std::string(format));
   if (kind == "png") return decode_height_png(bytes, name, options);
@@ -64,18 +75,24 @@ HeightGrid decode_heights(std::span<const std::byte> bytes, std::string_view for
                                      ".bin, .r16, .npy, .dem; as a file .tif, .tiff)");
 }
 
+}  // namespace
+
+HeightGrid decode_heights(std::span<const std::byte> bytes, std::string_view format,
+                          const std::string& name, RawSize raw, const ReadOptions& options) {
+  const FloatScope floats;
+  return read_in_memory(name, [&] { return decode(bytes, format, name, raw, options); });
+}
+
 HeightGrid read_heights(PathView name, RawSize raw, const ReadOptions& options) {
   const FloatScope floats;
   const std::filesystem::path file(name.text());
   const std::string extension = lower(file.extension().string());
-  try {
+  return read_in_memory(file.string(), [&] {
     if (extension == ".tif" || extension == ".tiff") return read_height_gdal(file, options);
     return read_mapped(file, [&](std::span<const std::byte> bytes) {
-      return decode_heights(bytes, extension, file.string(), raw, options);
+      return decode(bytes, extension, file.string(), raw, options);
     });
-  } catch (const std::bad_alloc&) {
-    throw Error(Errc::out_of_memory, file.string() + ": there is not enough memory to read it");
-  }
+  });
 }
 
 }  // namespace rastrum::io

@@ -59,7 +59,7 @@ RanksStats render_parts(Communicator& communicator, Renderer& renderer, Annotato
   const StopScope scope(stop);
   const bool is_root = communicator.rank() == options.root;
   Annotations a = annotations;
-  const FrameOptions drawn = with_infinity(frame);
+  FrameOptions drawn;
   Targets all;
   // Where textures blend, effects look at a surface that has holes (Annotator::add_surface).
   const bool has_surface =
@@ -68,6 +68,7 @@ RanksStats render_parts(Communicator& communicator, Renderer& renderer, Annotato
   const std::uint64_t steps = has_surface ? 3 : 2;
   RanksOptions first = options, second = options;
   do_alike(communicator, "check annotations", [&] {
+    drawn = with_infinity(frame);
     check_alike(a, scene, targets, is_root);
     if (options.progress) {
       first.progress = [&](std::string_view what, std::uint64_t done, std::uint64_t rows) {

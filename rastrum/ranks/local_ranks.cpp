@@ -8,6 +8,7 @@
 #include <system_error>
 #include <thread>
 
+#include <rastrum/core/no_memory.hpp>
 #include <rastrum/core/number_text.hpp>
 #include <rastrum/core/reject.hpp>
 #include <rastrum/error.hpp>
@@ -204,7 +205,7 @@ struct LocalRanks::Shared {
 LocalRanks::LocalRanks(int ranks, int node) {
   if (ranks < 1 || ranks > 4096) reject("ranks must lie between 1 and 4096, not ", ranks);
   if (node < 0) reject("ranks of a node must be 0 for all, or more, not ", node);
-  shared_ = std::make_unique<Shared>(ranks, node == 0 || node >= ranks);
+  shared_ = in_memory([&] { return std::make_unique<Shared>(ranks, node == 0 || node >= ranks); });
   const auto live_as = [shared = shared_.get()](int rank) {
     for (std::uint32_t turn = 0;;) {
       shared->turn.wait(turn);

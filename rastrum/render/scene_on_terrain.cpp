@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <rastrum/core/no_memory.hpp>
 #include <rastrum/core/reject.hpp>
 #include <rastrum/core/view_rows.hpp>
 #include <rastrum/parallel/exec.hpp>
@@ -56,7 +57,8 @@ struct SceneOnTerrain::Impl {
 };
 
 SceneOnTerrain::SceneOnTerrain(Renderer renderer)
-    : impl_("SceneOnTerrain", std::make_unique<Impl>(std::move(renderer))) {}
+    : impl_("SceneOnTerrain",
+            in_memory([&] { return std::make_unique<Impl>(std::move(renderer)); })) {}
 SceneOnTerrain::~SceneOnTerrain() = default;
 SceneOnTerrain::SceneOnTerrain(SceneOnTerrain&&) noexcept = default;
 SceneOnTerrain& SceneOnTerrain::operator=(SceneOnTerrain&&) noexcept = default;

@@ -133,6 +133,7 @@ Image<Rgba8> lit_colors(const HeightMap& map, const Light& light, const ShadowOp
 Terrain function_terrain(HeightFunction function, double low, double high, const Light& light,
                          std::optional<ScalarColors> colors) {
   const FloatScope floats;
+  if (!function) reject("a terrain of a function needs one");
   check(light);
   if (!std::isfinite(light.sun.azimuth_deg) || !std::isfinite(light.sun.elevation_deg))
     reject("the sun's angles must be finite");

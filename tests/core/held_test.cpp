@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <rastrum/error.hpp>
 #include <rastrum/function.hpp>
 #include <rastrum/held.hpp>
 
@@ -57,6 +58,31 @@ TEST(Shared, TheLastCopyEndsTheObject) {
   EXPECT_EQ(ends, 1);
 }
 
+struct Other {
+  virtual ~Other() = default;
+  int number = 3;
+};
+struct Both : Other, Counted {
+  using Counted::Counted;
+};
+struct CountsInstead {
+  int* ends;
+  void operator()(const Counted*) const { ++*ends; }
+};
+
+TEST(Shared, EndsWhatItKeepsAsTheOwnerDid) {
+  int ends = 0, instead = 0;
+  { const Shared<const Counted> second_base(std::make_unique<const Both>(ends)); }
+  EXPECT_EQ(ends, 1);
+  {
+    Counted object(ends);
+    const Shared<const Counted> shared(
+        std::unique_ptr<const Counted, CountsInstead>(&object, {&instead}));
+  }
+  EXPECT_EQ(instead, 1);
+  EXPECT_EQ(ends, 2);
+}
+
 TEST(Shared, IsMadeOfASharedPointerAndOfDerivedClasses) {
   struct Derived : Counted {
     using Counted::Counted;
@@ -103,6 +129,10 @@ TEST(FunctionRef, CallsWhatItRefersTo) {
   function = nullptr;
   EXPECT_FALSE(Ref());
   EXPECT_FALSE(Ref(function));
+  EXPECT_FALSE(Ref(nullptr));
+  int (*const none)(int) = nullptr;
+  EXPECT_FALSE(Ref(none));
+  EXPECT_THROW(static_cast<void>(Ref(none)(1)), Error);
   EXPECT_TRUE(Ref(counts));
 }
 
@@ -110,6 +140,14 @@ TEST(Function, KeepsWhatItCalls) {
   using F = Function<int(int)>;
   F kept, copy;
   EXPECT_FALSE(kept);
+  EXPECT_FALSE(F(nullptr));
+  EXPECT_THROW(static_cast<void>(F()(1)), Error);
+  {
+    F moved = twice;
+    const F to = std::move(moved);
+    EXPECT_EQ(to(2), 4);
+    EXPECT_EQ(moved(2), 4) << "a move is a copy";
+  }
   {
     int more = 5;
     kept = [more, n = 0](int i) mutable { return more + (n += i); };

@@ -8,6 +8,7 @@
 #include <mutex>
 
 #include <rastrum/core/angle.hpp>
+#include <rastrum/core/no_memory.hpp>
 #include <rastrum/core/reject.hpp>
 #include <rastrum/core/view_rows.hpp>
 #include <rastrum/overlay/effects/darken.hpp>
@@ -180,7 +181,7 @@ std::vector<Material> materials_of_surface(const SceneView& scene) {
 }
 
 Effects::Effects(int threads, std::optional<Isa> isa)
-    : impl_("Effects", std::make_unique<Impl>(threads, isa)) {}
+    : impl_("Effects", in_memory([&] { return std::make_unique<Impl>(threads, isa); })) {}
 Effects::~Effects() = default;
 Effects::Effects(Effects&&) noexcept = default;
 Effects& Effects::operator=(Effects&&) noexcept = default;
