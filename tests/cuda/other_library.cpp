@@ -4,7 +4,8 @@ namespace rastrum::parallel {
 struct CudaLibrary;
 }
 
-extern "C" const rastrum::parallel::CudaLibrary* rastrum_cuda_library() noexcept {
+extern "C" __attribute__((visibility("default"))) const rastrum::parallel::CudaLibrary*
+rastrum_cuda_library() noexcept {
   struct Other {
     const char* version;
   };

@@ -64,15 +64,13 @@ class CudaRenderer final : public DeviceRenderer {
  private:
   Counts draw(const Terrain& terrain, const TerrainOptions& options, const TerrainCamera& camera,
               const Roll* roll, const TerrainTargets& targets,
-              const std::function<void(const char* stage)>& lap,
-              const StopToken* stop) override {
+              const std::function<void(const char* stage)>& lap, const StopToken* stop) override {
     return parallel::on_device_of(
         exec_, [&] { return draw_picture(terrain, options, camera, roll, targets, lap, stop); });
   }
   Counts draw_picture(const Terrain& terrain, const TerrainOptions& options,
                       const TerrainCamera& camera, const Roll* roll, const TerrainTargets& targets,
-                      const std::function<void(const char* stage)>& lap,
-                      const StopToken* stop) {
+                      const std::function<void(const char* stage)>& lap, const StopToken* stop) {
     const StopScope scope(stop);
     if (terrain.is_map()) keep(terrain, options.filter == MapFilter::mip);
     lap("map");
