@@ -3,7 +3,6 @@
 #include <rastrum/c/handles.hpp>
 
 #include <string_view>
-#include <utility>
 
 #include <rastrum/device.hpp>
 

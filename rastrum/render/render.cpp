@@ -213,9 +213,10 @@ FrameStats RendererAccess::draw(Renderer& renderer, std::span<raster::Draw> draw
 
 FrameStats Renderer::draw(std::span<const ProgramDraw> draws, const FrameOptions& frame,
                           const Targets& targets, const Pass& pass, StopToken stop) {
-  std::vector<raster::Draw> own =
+  // Exceptions of a program pass as they are: only the copies are an error of the library.
+  std::vector<raster::Draw> copies =
       in_memory([&] { return std::vector<raster::Draw>(draws.begin(), draws.end()); });
-  return RendererAccess::draw(*this, own, {}, {}, frame, targets, pass, std::move(stop));
+  return RendererAccess::draw(*this, copies, {}, {}, frame, targets, pass, stop);
 }
 
 namespace {

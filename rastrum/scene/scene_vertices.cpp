@@ -8,7 +8,6 @@
 #include <list>
 #include <map>
 #include <string>
-#include <variant>
 
 #include <rastrum/core/vectors.hpp>
 #include <rastrum/error.hpp>

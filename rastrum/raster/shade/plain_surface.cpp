@@ -2,7 +2,6 @@
 #include <rastrum/raster/shade/plain_surface.hpp>
 
 #include <algorithm>
-#include <variant>
 
 #include <rastrum/raster/rules/srgb.hpp>
 #include <rastrum/raster/shade/lit_scalar.hpp>
