@@ -15,7 +15,7 @@ static_assert(RASTRUM_DEPTH_OPENGL == static_cast<int>(ClipDepth::opengl) &&
 
 namespace {
 
-/// Changes a camera by f(camera), which may throw; a matrix that it had is gone.
+/// Changes a camera by f(camera), which may throw, and drops its matrix.
 template <class F>
 rastrum_status with_lens(rastrum_camera* camera, const F& f) noexcept {
   return guarded([&] {
@@ -46,7 +46,7 @@ rastrum_status rastrum_camera_look_at(rastrum_camera* camera, const double eye[3
     c.eye = vec3(eye, "eye");
     c.target = vec3(target, "target");
     c.up = vec3(up, "up");
-    (void)world_to_camera(c);  // refuses directions that are none
+    (void)world_to_camera(c);  // refuses degenerate directions
   });
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Frames of the C interface: options, and targets by the names of the table.
+// Frames of the C interface: options, and targets by name.
 #include <rastrum/c/handles.hpp>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ static_assert(RASTRUM_CULL_NONE == static_cast<int>(Cull::none) &&
 
 namespace {
 
-/// Changes options by f(options), and keeps them where they pass check().
+/// Changes options by f(options); keeps them if they pass check().
 template <class F>
 rastrum_status with_frame(rastrum_frame* frame, const F& f) noexcept {
   return guarded([&] {
@@ -34,7 +34,7 @@ rastrum_status with_frame(rastrum_frame* frame, const F& f) noexcept {
   });
 }
 
-/// Calls f(row) for the target of that name. Throws Error{not_found}.
+/// Calls f(row) for the target `name`. Throws Error{not_found}.
 template <class F>
 void for_target(const char* name, const F& f) {
   const std::string_view wanted = &at(name, "the name of the target");
@@ -49,7 +49,7 @@ void for_target(const char* name, const F& f) {
     throw Error(Errc::not_found, text_of("no target is called '", wanted, "'; there are ", known));
 }
 
-/// The numbers of a pixel: floats, if nothing else is said.
+/// The numbers of a pixel; floats by default.
 struct PixelNumbers {
   int type, channels;
 };
@@ -68,7 +68,7 @@ constexpr PixelNumbers kNumbers<std::int32_t>{RASTRUM_INT32, 1};
 template <>
 constexpr PixelNumbers kNumbers<std::int64_t>{RASTRUM_INT64, 1};
 
-/// An image of a frame in memory whose size C's caller gives.
+/// An image of the frame's size in memory whose size the caller gives.
 template <class T>
 ImageView<T> image_in(void* pixels, std::size_t bytes, std::ptrdiff_t stride_bytes,
                       const FrameOptions& o, std::string_view name) {

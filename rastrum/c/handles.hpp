@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The contents of the C interface's handles, and how its functions begin and end: arguments are
-// mapped and passed on, and what C++ throws becomes a status. Values are checked where C++ checks
-// them; here are only the checks that a type of C++ makes needless (null, the number of an
-// instance, the size of memory).
+// The contents of the C interface's handles, and how its functions map arguments and turn
+// exceptions into a status. C++ checks the values. Here are only checks that C++ types make
+// unnecessary: null, an instance's number, the size of memory.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +20,7 @@
 
 struct rastrum_scene {
   std::vector<rastrum::InstanceView> instances;
-  /// Each instance's; copies share one until an attribute of it is set.
+  /// One per instance; copies share one until an attribute is set.
   std::vector<std::shared_ptr<rastrum::GeometryView>> geometries;
   std::vector<rastrum::ScalarMapping> color_maps;
 
@@ -45,10 +44,10 @@ struct rastrum_renderer {
 
 namespace rastrum::c {
 
-/// The status of the exception that is being handled; its sentence becomes rastrum_error_text().
+/// The status of the exception being handled; its text becomes rastrum_error_text().
 [[nodiscard]] rastrum_status status_of_exception() noexcept;
 
-/// Calls f(); nothing that it throws gets out.
+/// Calls f() and catches all exceptions.
 template <class F>
 [[nodiscard]] rastrum_status guarded(const F& f) noexcept {
   const FloatScope floats;
@@ -60,7 +59,7 @@ template <class F>
   }
 }
 
-/// The handle that f() makes, for its caller to free; null where it throws.
+/// The handle that f() makes, for the caller to free; null if it throws.
 template <class F>
 [[nodiscard]] auto made(const F& f) noexcept -> decltype(f()) {
   decltype(f()) handle = nullptr;
@@ -68,15 +67,15 @@ template <class F>
   return handle;
 }
 
-/// The value behind a pointer. Throws Error{invalid_argument} where that is null.
+/// The value behind a pointer. Throws Error{invalid_argument} if it is null.
 template <class T>
 [[nodiscard]] T& at(T* argument, const char* name) {
   require(argument != nullptr, name, " is null");
   return *argument;
 }
 
-/// A constant of C's as the enum whose numbers it has; what the enum does not have stays out of
-/// range, and is refused where it is used.
+/// A C constant as the enum with the same numbers. Other values become out of range, and are
+/// refused where they are used.
 template <class E>
 [[nodiscard]] E to_enum(int value) {
   static_assert(std::is_same_v<std::underlying_type_t<E>, std::uint8_t>);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Renderers of the C interface, and what they draw.
+// Renderers of the C interface.
 #include <rastrum/c/handles.hpp>
 
 #include <string_view>
@@ -9,7 +9,7 @@
 namespace rastrum::c {
 namespace {
 
-/// Makes a renderer anew with the options that f(options) changes.
+/// Makes the renderer again with its options changed by f(options).
 template <class F>
 rastrum_status with_options(rastrum_renderer* renderer, const F& f) noexcept {
   return guarded([&] {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scenes of the C interface: views over the caller's arrays.
+// Scenes of the C interface: views of the caller's arrays.
 #include <rastrum/c/handles.hpp>
 
 #include <limits>
@@ -33,7 +33,7 @@ static_assert(RASTRUM_PER_VERTEX == static_cast<int>(Per::vertex) &&
 
 namespace {
 
-/// An array as one of the views of array.hpp and scalars.hpp. `channels`: of the view's values.
+/// Makes a view of array.hpp or scalars.hpp. `channels`: those of its values if `a` gives none.
 template <class View>
 View view_of(const rastrum_array& a, int channels = 1) {
   if (a.count == 0) return {};
@@ -49,7 +49,7 @@ View view_of(const rastrum_array& a, int channels = 1) {
   const std::size_t step = stride < 0 ? 0 - forward : forward;
   require(a.count <= std::numeric_limits<std::ptrdiff_t>::max() / step, "array: ", a.count,
           " values, every ", stride, " bytes, do not fit into memory");
-  // C knows no end of the memory: it is where the last value ends.
+  // C gives no size of the memory: it ends with the last value.
   const auto* const first = static_cast<const std::byte*>(a.data);
   const std::span<const std::byte> reach = array_detail::reach(first, a.count, stride, value);
   return View::in(reach, {.type = type,
@@ -71,7 +71,7 @@ ArrayView<float> floats_of(const rastrum_array& a) {
 
 void append(rastrum_scene& scene, const InstanceView& instance,
             std::shared_ptr<GeometryView> geometry, size_t* number) {
-  scene.geometries.resize(scene.instances.size());  // one more where memory was refused
+  scene.geometries.resize(scene.instances.size());  // drops what a failed append has left
   scene.geometries.push_back(std::move(geometry));
   scene.instances.push_back(instance);
   scene.instances.back().geometry = *scene.geometries.back();
@@ -91,13 +91,12 @@ InstanceView& instance_of(rastrum_scene* scene, size_t number) {
   return scene->instances[number];
 }
 
-/// Changes an instance by f(instance).
 template <class F>
 rastrum_status with_instance(rastrum_scene* scene, size_t number, const F& f) noexcept {
   return guarded([&] { f(instance_of(scene, number)); });
 }
 
-/// Calls f(geometry), which returns whether such a geometry has what is set.
+/// Calls f(geometry), which returns whether this kind of geometry has the attribute.
 template <class F>
 rastrum_status with_geometry(rastrum_scene* scene, size_t number, const char* what,
                              const F& f) noexcept {
@@ -114,7 +113,7 @@ Per per_of(int per) {
   return to_enum<Per>(per);
 }
 
-/// Sets an attribute of a mesh, or of a geometry whose attributes have one value an element.
+/// Sets an attribute of a mesh, or of a geometry with one value per element.
 template <class T>
 void set(AttributeView<T>& attribute, const ArrayView<T>& values, int per) {
   attribute = {values, {}, per_of(per)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Exceptions become a status, and a sentence that the calling thread keeps.
+// Turns exceptions into a status, and text that the calling thread keeps.
 #include <rastrum/c/handles.hpp>
 
 #include <exception>
@@ -23,7 +23,7 @@ rastrum_status failed(rastrum_status status, const char* sentence) noexcept {
     last_error() = sentence;
   } catch (...) {
     last_error().clear();
-    last_error() = "no memory left";  // so short that it needs none
+    last_error() = "no memory left";  // short enough to need no memory
   }
   return status;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Angles in degrees, whose quarters are exact.
+// Angles in degrees, exact at quarter turns.
 #pragma once
 
 #include <cmath>
@@ -11,11 +11,9 @@ namespace rastrum {
 
 using elementary::SinCos;
 
-/// The sine and cosine of any finite angle, in degrees; to about an ulp, exact (−1, 0, 1) at
-/// multiples of 90.
+/// The sine and cosine of any finite angle in degrees, to about an ulp; exact at multiples of 90.
 inline SinCos sin_cos_degrees(double degrees) {
-  // Both are exact: fmod by its definition, and what is left of a quarter by having few enough
-  // bits.
+  // Both are exact: fmod by definition, and the rest of a quarter because it has few enough bits.
   const double turn = std::fmod(degrees, 360.0);
   const double quarters = std::floor(turn / 90 + 0.5);
   const auto [s, c] = elementary::sin_cos((turn - 90 * quarters) * (std::numbers::pi / 180));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How the values of each type are read: the one place where types become code.
+// Reads values of each type: the one place where types become code.
 #include <rastrum/array.hpp>
 #include <rastrum/scalars.hpp>
 
@@ -18,7 +18,7 @@ C load(const std::byte* from) {
   return value;
 }
 
-/// To float32, or for float64 to itself.
+/// As float32; float64 stays as it is.
 template <class C>
 auto number(C c) {
   if constexpr (std::is_floating_point_v<C>) {
@@ -30,7 +30,7 @@ auto number(C c) {
   }
 }
 
-/// The value at `from`: To is T, or Wide<T>.
+/// The value at `from`; To is T or Wide<T>.
 template <class To, class C, int channels>
 To value(const std::byte* from) {
   using Number = std::conditional_t<std::same_as<To, Vec3d>, double, float>;
@@ -83,8 +83,8 @@ std::ptrdiff_t stride_of(const ArrayLayout& l) {
   return l.stride_bytes.value_or(static_cast<std::ptrdiff_t>(packed));
 }
 
-/// Where the first value lies. Throws where the last one, and so some other, reaches beyond
-/// `buffer`. Sizes are compared before they are multiplied.
+/// The address of the first value. Throws if any value reaches beyond `buffer`. Compares before it
+/// multiplies, so that nothing overflows.
 const void* first_within(std::span<const std::byte> buffer, const ArrayLayout& l) {
   if (l.count == 0) return buffer.data();
   const std::size_t size = buffer.size();
@@ -92,7 +92,7 @@ const void* first_within(std::span<const std::byte> buffer, const ArrayLayout& l
   const std::ptrdiff_t stride = stride_of(l);
   const auto step = stride < 0 ? std::uint64_t{0} - static_cast<std::uint64_t>(stride)
                                : static_cast<std::uint64_t>(stride);
-  // How far the last value may lie from the first.
+  // The farthest that the last value may lie from the first.
   std::uint64_t reach = 0;
   bool ok = value <= size && l.offset_bytes <= size - value;
   if (ok) reach = stride < 0 ? l.offset_bytes : size - value - l.offset_bytes;
@@ -148,7 +148,7 @@ template const IndexReader& index_reader<std::int64_t>() noexcept;
 
 namespace {
 
-/// f of a number of this type; f(nullptr) for a value that the enum does not have.
+/// Returns f(a number of this type), or f(nullptr) for a value that the enum lacks.
 template <class F>
 auto visit_type(NumberType type, const F& f) {
   switch (type) {

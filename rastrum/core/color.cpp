@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Colours as people write them: digits, with or without their #, or the names of CSS.
+// Colours as text: hexadecimal digits, with or without #, or CSS names.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -19,7 +19,7 @@ struct NamedColor {
   std::uint32_t rgb;
 };
 
-/// The 148 named colours of CSS Color Module Level 4, section 6.1, by name.
+/// The 148 named colours of CSS Color Module Level 4, section 6.1, sorted by name.
 constexpr NamedColor kNamed[] = {
     {"aliceblue", 0xf0f8ff},
     {"antiquewhite", 0xfaebd7},

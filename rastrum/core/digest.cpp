@@ -93,7 +93,7 @@ class Sha256 {
   std::uint64_t length_ = 0;
 };
 
-/// `type`, as NumPy calls it, of each of `channels` numbers a pixel.
+/// `type` is NumPy's name for a pixel's numbers.
 template <class Number, class T>
 Digest of(ImageView<const T> image, const char* type) {
   constexpr std::size_t kChannels = sizeof(T) / sizeof(Number);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Each function is computed as an unevaluated sum of two doubles (Dekker, "A floating-point
-// technique for extending the available precision", 1971): what a series begins with in these
-// pairs, its small rest in one double, and the sum is rounded once. Arguments of sine and cosine
-// are reduced in integers, with as many bits of 2/π as their size asks for (Payne and Hanek,
-// "Radian reduction for trigonometric functions", 1983).
+// technique for extending the available precision", 1971) and rounded once. A series' first terms
+// are such pairs, its small rest is one double. Sine and cosine reduce their argument in integers,
+// with as many bits of 2/π as its size needs (Payne and Hanek, "Radian reduction for trigonometric
+// functions", 1983).
 #include <rastrum/core/elementary.hpp>
 
 #include <algorithm>
@@ -20,18 +20,18 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// hi + lo, where lo is at most half an ulp of hi.
+/// hi + lo; lo is at most half an ulp of hi.
 struct Pair {
   double hi = 0, lo = 0;
 };
 
 constexpr Pair kHalfPi{0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
 constexpr Pair kPi{2 * kHalfPi.hi, 2 * kHalfPi.lo};
-/// log 2: a part of 41 bits, whose products with exponents are exact, and the rest.
+/// log 2: 41 bits, whose products with exponents are exact, and the rest.
 constexpr double kLog2High = 0x1.62e42fefa3000p-1;
 constexpr Pair kLog2Rest{0x1.3de6af278ece6p-42, 0x1.f97b57a079a19p-103};
 
-/// a + b, exactly, where |a| ≥ |b|.
+/// a + b, exactly. Requires |a| ≥ |b|.
 Pair sum_sorted(double a, double b) {
   const double s = a + b;
   return {s, b - (s - a)};
@@ -41,7 +41,7 @@ Pair sum(double a, double b) {
   const double s = a + b, from_b = s - a;
   return {s, (a - (s - from_b)) + (b - from_b)};
 }
-/// a · b, exactly, of factors below 2⁹⁹⁵ whose product is above 2⁻⁹⁶⁹.
+/// a · b, exactly, for factors below 2⁹⁹⁵ whose product is above 2⁻⁹⁶⁹.
 Pair product(double a, double b) {
   constexpr double kSplit = 0x1p27 + 1;
   const double ca = kSplit * a, cb = kSplit * b;
@@ -85,7 +85,7 @@ double polynomial(const std::array<double, n>& c, double z) {
 
 // --- Sine and cosine ----------------------------------------------------------------------------
 
-/// 2/π, the bits behind the point, as many as the largest double needs.
+/// The bits of 2/π behind the point, as many as the largest double needs.
 constexpr std::uint64_t kTwoOverPi[19] = {
     0xa2f9836e4e441529, 0xfc2757d1f534ddc0, 0xdb6295993c439041, 0xfe5163abdebbc561,
     0xb7246e3a424dd2e0, 0x06492eea09d1921c, 0xfe1deb1cb129a73e, 0xe88235f52ebb4484,
@@ -93,7 +93,7 @@ constexpr std::uint64_t kTwoOverPi[19] = {
     0xef2f118b5a0a6d1f, 0x6d367ecf27cb09b7, 0x4f463f669e5fea2d, 0x7527bac7ebe5f17b,
     0x3d0739f78a5292ea, 0x6bfb5fb11f8d5d08, 0x56033046fc7b6bab};
 
-/// An angle as quarter turns and a rest of up to π/4.
+/// An angle as quarter turns and a rest of at most π/4.
 struct Reduced {
   unsigned quarters = 0;
   Pair rest;
@@ -101,7 +101,7 @@ struct Reduced {
 
 __extension__ using Uint128 = unsigned __int128;
 
-/// 192 bits, the highest first.
+/// 192 bits, highest first.
 struct Bits {
   std::uint64_t word[3];
 
@@ -113,12 +113,12 @@ struct Bits {
   }
 };
 
-/// Payne and Hanek's reduction, of a finite angle above π/4.
+/// Payne and Hanek's reduction, for finite angles above π/4.
 Reduced reduce_large(double rad) {
   const auto bits = std::bit_cast<std::uint64_t>(rad);
   const int exponent = static_cast<int>(bits >> 52) - 1075;  // rad = mantissa · 2^exponent
   const std::uint64_t mantissa = (bits & 0xfffffffffffff) | 0x10000000000000;
-  // 192 bits of 2/π from the first whose product is no whole number of turns.
+  // 192 bits of 2/π, from the first whose product is not a whole number of turns.
   const int first = exponent > 2 ? exponent - 2 : 0;
   std::uint64_t window[3];
   for (int i = 0; i < 3; ++i) {
@@ -135,30 +135,30 @@ Reduced reduce_large(double rad) {
     carry >>= 64;
   }
   p[0] = static_cast<std::uint64_t>(carry);
-  // Two bits of quarter turns before 190 of the rest.
+  // Align to two bits of quarter turns, then 190 bits of the rest.
   if (const int down = 2 - (exponent - first); down > 0)
     for (int i = 3; i > 0; --i) p[i] = p[i] >> down | p[i - 1] << (64 - down);
   unsigned quarters = static_cast<unsigned>(p[1] >> 62);
   Bits rest = Bits{{p[1], p[2], p[3]}}.shifted_left(2);
-  // To the nearest quarter turn.
+  // Round to the nearest quarter turn.
   const bool negative = rest.word[0] >> 63 != 0;
   if (negative) {
     ++quarters;
-    rest = {{~rest.word[0], ~rest.word[1], ~rest.word[2]}};  // one unit of 2⁻¹⁹² does not matter
+    rest = {{~rest.word[0], ~rest.word[1], ~rest.word[2]}};  // an error of 2⁻¹⁹² does not matter
   }
   int zeros = 0;
   while (zeros < 128 && rest.shifted_left(zeros).word[0] >> 63 == 0)
     zeros += std::countl_zero(rest.shifted_left(zeros).word[0]);
   const Bits top = rest.shifted_left(zeros);
-  // The first 53 bits, then the 53 behind them.
+  // The first 53 bits, then the next 53.
   const auto hi = static_cast<double>(top.word[0] >> 11);
   const auto lo = static_cast<double>((top.word[0] & 0x7ff) << 42 | top.word[1] >> 22);
   const double unit = std::ldexp(negative ? -1.0 : 1.0, -53 - zeros);
   return {quarters, sum_sorted(hi * unit, lo * (unit * 0x1p-53)) * kHalfPi};
 }
 
-/// Cody and Waite's reduction: π/2 in two parts of 33 bits, whose products with up to 2¹⁹ are
-/// exact, and the rest.
+/// Cody and Waite's reduction: π/2 as two parts of 33 bits, whose products with numbers up to 2¹⁹
+/// are exact, and the rest.
 Reduced reduce_small(double rad) {
   constexpr double kPerHalfPi = 0x1.45f306dc9c883p-1;
   constexpr double kFirst = 0x1.921fb54400000p+0, kSecond = 0x1.0b4611a600000p-34;
@@ -177,7 +177,7 @@ Reduced reduce(double rad) {
   return r;
 }
 
-/// Sine and cosine of an angle of up to π/4, by Taylor's series.
+/// Sine and cosine of an angle of at most π/4, by Taylor series.
 Pair sin_small(Pair x) {
   constexpr Pair kSixth{-0x1.5555555555555p-3, -0x1.5555555555555p-57};
   constexpr std::array<double, 8> kSeries{
@@ -196,7 +196,7 @@ Pair cos_small(Pair x) {
   return Pair{1} + (Pair{-z.hi / 2, -z.lo / 2} + z * z * rest);
 }
 
-/// The sine of an angle and so many quarter turns: 1 for the cosine.
+/// The sine of an angle plus `quarters` quarter turns; 1 gives the cosine.
 Pair sin_of(const Reduced& angle, unsigned quarters) {
   quarters += angle.quarters;
   const Pair v = quarters % 2 == 0 ? sin_small(angle.rest) : cos_small(angle.rest);
@@ -205,13 +205,13 @@ Pair sin_of(const Reduced& angle, unsigned quarters) {
 
 // --- Arc functions ------------------------------------------------------------------------------
 
-/// The angle of (x, y) in [0, π], of a y that is not negative; neither above 1, one at least 0.7.
+/// The angle of (x, y) in [0, π] for y ≥ 0. Both are at most 1, and one is at least 0.7.
 Pair angle_of(Pair y, Pair x) {
   if (x.hi < 0) return kPi + -angle_of(y, -x);
   if (y.hi > x.hi) return kHalfPi + -angle_of(x, y);
   const double t = y.hi / x.hi;
   if (t < 0x1p-30) return y / x;
-  // A guess that is off by 0.005 at most, and what is left from its exact sine and cosine.
+  // A guess within 0.005; the rest follows from its exact sine and cosine.
   const double guess = t / (1 + 0.28086 * t * t);
   const Pair s = sin_small({guess}), c = cos_small({guess});
   const double d = (y * c + -(x * s)).hi / (x * c + y * s).hi, z = d * d;
@@ -225,7 +225,7 @@ Pair other_leg(double s) {
 
 // --- Exponential and logarithm ------------------------------------------------------------------
 
-/// m · 2^k, rounded once in float64's normal range, of |k| below 2,200.
+/// m · 2^k for |k| below 2,200, rounded once in float64's normal range.
 double scaled(double m, int k) {
   const int half = k / 2;
   const auto power = [](int e) {
@@ -277,7 +277,7 @@ Pair log_pair(double x) {
   return Pair{k * kLog2High} + (kLog2Rest * Pair{static_cast<double>(k)} + log_m);
 }
 
-/// The logarithm of x where it is not a finite number: ±∞ or NaN; 0 where it is finite.
+/// The logarithm of x if it is ±∞ or NaN; 0 if it is finite.
 double odd_log(double x) {
   return x > 0 ? (x < kInfinity ? 0 : x) : x == 0 ? -kInfinity : kNan;
 }
@@ -336,7 +336,7 @@ double atan2(double y, double x) {
   if (std::isnan(x) || std::isnan(y)) return kNan;
   double across = std::abs(x), up = std::abs(y);
   if (across == kInfinity || up == kInfinity || across == up) {
-    // Infinite or equal sizes: only their ratio counts. (0, 0) is on the axis.
+    // Infinite or equal: only the ratio matters. (0, 0) lies on the x axis.
     across = across >= up ? 1 : 0;
     up = up >= std::abs(x) && up > 0 ? 1 : 0;
   }
@@ -346,7 +346,7 @@ double atan2(double y, double x) {
     const bool steep = up > across;
     angle = steep ? kHalfPi.hi : std::signbit(x) ? kPi.hi : up / across;
   } else {
-    // To where products are exact.
+    // Scale to where products are exact.
     const double scale = larger > 1 ? 0x1p-500 : larger < 0x1p-400 ? 0x1p500 : 1;
     const Pair unit{larger * scale};
     const Pair c = Pair{across * scale} / unit;
@@ -386,7 +386,7 @@ double pow(double x, double y) {
   const bool negative = std::signbit(x) && is_odd(y);
   double power;
   if (size == 0 || size == kInfinity || std::abs(y) > 0x1p70) {
-    // To 0 or to infinity; 1 where x is −1.
+    // The result is 0 or infinite, or 1 if x is −1.
     power = size == 1 ? 1 : (size > 1) == (y > 0) ? kInfinity : 0;
   } else {
     if (x < 0 && !is_integer(y)) return kNan;

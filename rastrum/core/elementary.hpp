@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The elementary functions of whatever leads to a pixel. A libm rounds its own as it likes, and
-// each version another way; these are the same bits on every machine, because they are made of
-// IEEE's + − · / √ and of integers alone (decision 0030; tools/check_libm.py holds sources to it).
+// The elementary functions for all that leads to a pixel. Each libm, and each version of it, rounds
+// differently. These give the same bits on every machine, because they use only IEEE's + − · / √
+// and integers (decision 0030; tools/check_libm.py enforces their use).
 //
-// In float64, faithfully rounded: the error is below 0.53 ulp, so nearly always the nearest number
-// is returned; 0.8 ulp for pow where |y log x| is above 100, 1 ulp where a result is below
-// 2⁻¹⁰²². NaN, infinities and zeros are IEEE's. Cost: 50 (sin) to 200 ns (cbrt).
+// In float64, faithfully rounded: the error is below 0.53 ulp, so the result is nearly always the
+// nearest number; 0.8 ulp for pow where |y log x| is above 100, 1 ulp for results below 2⁻¹⁰²².
+// NaN, infinities and zeros as in IEEE. Cost: 50 (sin) to 200 ns (cbrt).
 #pragma once
 
 namespace rastrum::elementary {
@@ -14,13 +14,13 @@ struct SinCos {
   double sin = 0, cos = 1;
 };
 
-/// Sine, cosine and tangent of any angle in radians, however large; NaN where it is not finite.
+/// Sine, cosine and tangent of any angle in radians, however large; NaN if it is not finite.
 [[nodiscard]] SinCos sin_cos(double rad);
 [[nodiscard]] double sin(double rad);
 [[nodiscard]] double cos(double rad);
 [[nodiscard]] double tan(double rad);
 
-/// In radians: [−π/2, π/2], [−π/2, π/2], [0, π]; NaN for asin and acos beyond [−1, 1].
+/// In radians: [−π/2, π/2], [−π/2, π/2], [0, π]; asin and acos are NaN beyond [−1, 1].
 [[nodiscard]] double atan(double t);
 [[nodiscard]] double asin(double s);
 [[nodiscard]] double acos(double c);
@@ -30,12 +30,12 @@ struct SinCos {
 [[nodiscard]] double exp(double x);
 /// −∞ at 0, NaN below.
 [[nodiscard]] double log(double x);
-/// log(1 + x), exact where that sum would not be. −∞ at −1, NaN below.
+/// log(1 + x), accurate for small x. −∞ at −1, NaN below.
 [[nodiscard]] double log1p(double x);
 [[nodiscard]] double log2(double x);
 [[nodiscard]] double log10(double x);
 
-/// IEEE's: pow(x, 0) = pow(1, y) = 1, a negative x has a power where y is an integer.
+/// As in IEEE: pow(x, 0) = pow(1, y) = 1; a negative x needs an integer y.
 [[nodiscard]] double pow(double x, double y);
 [[nodiscard]] double cbrt(double x);
 

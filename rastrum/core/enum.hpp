@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Enums that come from a caller: a cast can give them a value that none of their names has.
+// Checks enums from callers: a cast can give them a value without a name.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace rastrum {
 
-/// Throws Error{invalid_argument} that begins with `name` where `value` is above `last`, the last
-/// of an enum whose values count from 0.
+/// Throws Error{invalid_argument} that begins with `name` if `value` is above `last`. Requires that
+/// the enum's values count from 0 to `last`.
 template <class E>
 void check_enum(E value, E last, const std::string& name) {
   static_assert(std::is_unsigned_v<std::underlying_type_t<E>>);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers in float64, rounded to what float32 holds.
+// Rounds float64 numbers to float32.
 #pragma once
 
 #include <rastrum/vec.hpp>
 
 namespace rastrum {
 
-/// Through memory: where GCC 12 (-O2) makes vectors of the rounding and of the way back, it leaves
-/// both out, as if float32 held all numbers of float64.
+/// Goes through memory: GCC 12 (-O2) vectorizes the rounding together with the conversion back, and
+/// then leaves both out.
 [[nodiscard]] inline double in_float32(double x) {
   const volatile float rounded = static_cast<float>(x);
   return rounded;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// In a separate file, because a compiler moves no arithmetic past calls of functions that it does
-// not see.
+// In its own file, because compilers move no arithmetic past calls that they cannot see into.
 #include <rastrum/core/float_scope.hpp>
 
 #if defined(__x86_64__)
@@ -13,7 +12,7 @@ namespace rastrum {
 
 #if defined(__x86_64__)
 
-// One register has both.
+// One register has both control and flags.
 FloatScope::FloatScope() noexcept : callers_control_(_mm_getcsr()), callers_flags_(0) {
   constexpr unsigned kAllMasked = 0x1f80;
   _mm_setcsr(kAllMasked);

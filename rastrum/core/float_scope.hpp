@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Sets the library's floating-point mode, whatever the calling thread has set: rounding to nearest,
-// subnormal numbers kept, no traps. Simulations run with traps enabled (-ffpe-trap), and numeric
-// libraries flush subnormals; neither may change a picture or end in SIGFPE.
+// Sets the library's floating-point mode, whatever the caller's: rounding to nearest, subnormals
+// kept, no traps. Simulations run with traps (-ffpe-trap), and numeric libraries flush subnormals;
+// neither may change a picture or raise SIGFPE.
 #pragma once
 
 #include <cstdint>
 
 namespace rastrum {
 
-/// Sets the mode of the calling thread. The destructor restores it, and the flags (overflow, …).
-/// Each public function that computes has one, and so does each range of a loop that a thread
-/// takes. Cost: a few nanoseconds.
+/// Sets the calling thread's mode; the destructor restores it and the flags (overflow, …). Each
+/// public function that computes has one, and each range of a threaded loop. Cost: a few
+/// nanoseconds.
 class FloatScope {
  public:
   FloatScope() noexcept;

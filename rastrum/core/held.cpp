@@ -32,7 +32,7 @@ void join(Count* count) noexcept {
   count->number.fetch_add(1, std::memory_order_relaxed);
 }
 
-// The order makes the end of the object come after all that others did with it.
+// acq_rel: the object ends after all that other threads did with it.
 void leave(Count* count) noexcept {
   if (count->number.fetch_sub(1, std::memory_order_acq_rel) != 1) return;
   count->destroy(count->object);

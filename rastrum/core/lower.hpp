@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Letters of ASCII in lower case, in every locale.
+// ASCII letters in lower case, in every locale.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scratch memory that is reused between frames and accounted, so that a render can report its peak.
+// Scratch memory that frames reuse and an account counts, so that a render can report its peak.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 
 namespace rastrum {
 
-/// Bytes held now and at most since the last `restart_peak`. Thread-safe.
+/// Bytes held now, and the most since the last `restart_peak`. Thread-safe.
 class MemoryAccount {
  public:
   void add(std::size_t bytes) noexcept {
@@ -36,8 +36,8 @@ class MemoryAccount {
   std::atomic<std::uint64_t> held_ = 0, peak_ = 0;
 };
 
-/// A growing array of trivial elements that is never initialized and never shrinks: the contents
-/// are the caller's business. 64-byte aligned. The account must outlive it.
+/// A growing array of trivial elements, uninitialized, which never shrinks. 64-byte aligned. The
+/// account must outlive it.
 template <class T>
 class ScratchBuffer {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -51,12 +51,12 @@ class ScratchBuffer {
   ScratchBuffer& operator=(ScratchBuffer&&) = delete;
   ~ScratchBuffer() { release(); }
 
-  /// At least `count` elements; the first `keep` survive. Amortized O(1) an element when grown by
-  /// steps. Throws Error{out_of_memory} with what was asked for.
+  /// Makes room for `count` elements; the first `keep` survive. Throws Error{out_of_memory} with
+  /// the size asked for.
   void reserve(std::size_t count, std::size_t keep = 0) {
     if (count <= capacity_) return;
     if (count > (std::numeric_limits<std::size_t>::max() - 63) / sizeof(T)) fail(count);
-    // If nothing must survive, the old memory goes first: both are never held at once.
+    // Without survivors the old memory goes first, so that both are never held at once.
     if (keep == 0) release();
     const std::size_t bytes = (count * sizeof(T) + 63) / 64 * 64;
     std::unique_ptr<T[], Free> grown(static_cast<T*>(std::aligned_alloc(64, bytes)));
@@ -67,7 +67,7 @@ class ScratchBuffer {
     data_ = std::move(grown);
     capacity_ = count;
   }
-  /// reserve that at least doubles, for appending.
+  /// Like reserve, but at least doubles: for appending, amortized O(1) per element.
   void grow(std::size_t count, std::size_t keep) {
     if (count > capacity_) reserve(std::max(count, capacity_ * 2), keep);
   }

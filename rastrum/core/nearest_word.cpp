@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The distance is Damerau's and Levenshtein's in its restricted form (optimal string alignment):
-// no letter is edited twice.
+// The distance is the restricted Damerau–Levenshtein distance (optimal string alignment): no letter
+// is edited twice.
 #include <rastrum/core/nearest_word.hpp>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ bool same(char a, char b) {
 }
 
 std::size_t distance(std::string_view a, std::string_view b) {
-  // Rows of the table: two before, one before, now.
+  // Rows of the table: the last but one, the last, the current one.
   std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), now(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {

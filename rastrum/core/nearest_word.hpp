@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// "Did you mean": the nearest of some words to one that is not among them.
+// "Did you mean": finds the nearest word to one that is unknown.
 #pragma once
 
 #include <span>
@@ -8,10 +8,9 @@
 
 namespace rastrum {
 
-/// The first of the nearest words, where one is near enough to be meant: it begins with `given` (of
-/// at least three letters), or at most a third of its letters are left out, added, changed or
-/// swapped with their neighbour, whatever their case. Else empty.
-/// Cost: O(words · length²).
+/// The first of the nearest words that need at most a third of their letters left out, added,
+/// changed or swapped with a neighbour. Otherwise the first that begins with `given`, if that has
+/// at least three letters. Otherwise empty. Ignores case. Cost: O(words · length²).
 [[nodiscard]] std::string_view nearest_word(std::string_view given,
                                             std::span<const std::string_view> words);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Memory that is not there, as users of the library see it.
+// Reports exhausted memory to users of the library.
 #pragma once
 
 #include <new>
@@ -8,8 +8,8 @@
 
 namespace rastrum {
 
-/// Returns f(). Throws Error{out_of_memory} in the place of std::bad_alloc: doors of the library
-/// have this around what they do.
+/// Returns f(). Throws Error{out_of_memory} instead of std::bad_alloc. Public functions wrap their
+/// work in this.
 template <class F>
 auto in_memory(const F& f) {
   try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How functions refuse an argument.
+// Refuses arguments.
 #pragma once
 
 #include <rastrum/core/number_text.hpp>
@@ -13,7 +13,7 @@ template <class... Parts>
   throw Error(Errc::invalid_argument, text_of(parts...));
 }
 
-/// The same unless `ok`. Written as what must hold, so that a NaN fails.
+/// The same unless `ok`. The condition says what must hold, so that a NaN fails.
 template <class... Parts>
 void require(bool ok, const Parts&... parts) {
   if (!ok) reject(parts...);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The sRGB transfer function (IEC 61966-2-1), from display to light.
+// The sRGB transfer function (IEC 61966-2-1).
 #pragma once
 
 #include <rastrum/core/elementary.hpp>

@@ -23,7 +23,7 @@ Quaternion slerp(const Quaternion& a, const Quaternion& b, double t) {
   const double cosine = dot(a, b);
   const double sign = cosine < 0 ? -1 : 1;
   const double angle = elementary::acos(std::min(std::abs(cosine), 1.0));
-  // Where the sine vanishes the arc is a straight line to the last bits.
+  // For tiny angles the arc is a straight line to the last bits.
   const double sine = elementary::sin(angle);
   const double wa = sine > 1e-9 ? elementary::sin((1 - t) * angle) / sine : 1 - t;
   const double wb = sign * (sine > 1e-9 ? elementary::sin(t * angle) / sine : t);

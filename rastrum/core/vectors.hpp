@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Vectors on the host: the corners of boxes, and affine matrices in float64.
+// Boxes of vectors, and affine matrices in float64, on the host.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ template <class V>
   return {std::max(a.x, b.x), std::max(a.y, b.y), std::max(a.z, b.z)};
 }
 
-/// A box of points; of none it is from infinity to −infinity.
+/// A box of points; empty, it goes from infinity to −infinity.
 template <class V>
 struct BoxOf {
   static constexpr auto kFar = std::numeric_limits<decltype(V::x)>::infinity();
@@ -38,7 +38,7 @@ struct BoxOf {
 using Box3 = BoxOf<Vec3>;
 using Box3d = BoxOf<Vec3d>;
 
-/// None: its length is 0 or not finite.
+/// Null if the length is 0 or not finite.
 [[nodiscard]] inline std::optional<Vec3d> direction_of(const Vec3d& v) {
   const double l = length(v);
   if (!(l > 0) || !std::isfinite(l)) return std::nullopt;
@@ -49,7 +49,7 @@ using Box3d = BoxOf<Vec3d>;
 [[nodiscard]] inline Vec3d row_of(const Mat4d& a, int i) {
   return {a.m[i][0], a.m[i][1], a.m[i][2]};
 }
-/// Where an affine matrix puts a direction, and a point.
+/// A direction and a point, mapped by an affine matrix.
 [[nodiscard]] inline Vec3d turned_by(const Mat4d& a, const Vec3d& v) {
   const auto row = [&](int i) { return a.m[i][0] * v.x + a.m[i][1] * v.y + a.m[i][2] * v.z; };
   return {row(0), row(1), row(2)};

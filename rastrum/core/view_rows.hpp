@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The rows of images in memory: whether a view is one that can be filled, and whether two overlap:
-// if two images do, or an image and an array, one destroys the other.
+// The rows of images in memory: checks that a view can be filled, and that images and arrays do not
+// overlap, where one would destroy the other.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +12,8 @@
 
 namespace rastrum {
 
-/// Throws Error{invalid_argument} that begins with `name` where rows of the view overlap, and where
-/// it has a size but no pixels.
+/// Throws Error{invalid_argument} that begins with `name` if the view's rows overlap, or if it has
+/// a size but no pixels.
 template <class T>
 void check_stride(const ImageView<T>& view, const std::string& name) {
   if (view.empty() && view.width != 0 && view.height != 0)
@@ -30,7 +30,7 @@ void check_stride(const ImageView<T>& view, const std::string& name) {
                     "the next (negative: from the bottom up)");
 }
 
-/// check_stride, and the same where the view is neither empty nor width × height.
+/// check_stride, and refuses a non-empty view that is not width × height.
 template <class T>
 void check_size(const ImageView<T>& view, int width, int height, const std::string& name) {
   if (view.empty()) return check_stride(view, name);
@@ -42,7 +42,7 @@ void check_size(const ImageView<T>& view, int width, int height, const std::stri
   check_stride(view, name);
 }
 
-/// The rows of an image, those at lower addresses first; they do not overlap (check_stride).
+/// The rows of an image by ascending address; they do not overlap (check_stride).
 struct ViewRows {
   const std::byte* first = nullptr;
   std::size_t row_bytes = 0, rows = 0;
@@ -62,10 +62,10 @@ struct ViewRows {
   }
 };
 
-/// Whether both contain the same byte. O(1) if one lies behind the other, else O(rows).
+/// Whether they share a byte. O(1) if one lies behind the other, else O(rows).
 [[nodiscard]] bool overlap(const ViewRows& a, const ViewRows& b) noexcept;
 
-/// Throws Error{invalid_argument} that names both where they overlap.
+/// Throws Error{invalid_argument} that names both if they overlap.
 template <class A, class B>
 void check_apart(const ImageView<A>& a, const char* name_a, const ImageView<B>& b,
                  const char* name_b) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The library of device code as it is opened (parallel/cuda/library.hpp): the tables of all floors
-// in one. It is above them all; the program knows it by its file alone.
+// The entry point of the library of device code (parallel/cuda/library.hpp): the tables of all
+// floors in one. It lies above all floors, and the program knows it only as a file.
 #include <rastrum/parallel/cuda/driver.hpp>
 #include <rastrum/parallel/cuda/library.hpp>
 #include <rastrum/render/cuda/rasterizer.hpp>
 #include <rastrum/terrain/cuda/device.hpp>
 
-// All else is hidden: what the library has of Rastrum's is its own copy.
+// All else is hidden: the library's copy of Rastrum's code stays its own.
 __attribute__((visibility("default"))) const rastrum::parallel::CudaLibrary*
 rastrum_cuda_library() noexcept {
   static const rastrum::parallel::CudaLibrary library{

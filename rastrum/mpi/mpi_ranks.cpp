@@ -31,8 +31,8 @@ MPI_Comm checked(MPI_Comm comm) {
   return comm;
 }
 
-/// Whether memory that processes share has so many bytes left, and some for MPI. Linux's has a size
-/// of its own, in a container often 64 MiB; what has none of that name is not asked.
+/// Whether shared memory has `bytes` bytes left, and some for MPI. Linux limits it separately, in a
+/// container often to 64 MiB. True on systems without /dev/shm.
 bool has_room(std::size_t bytes) {
   struct statvfs there {};
   if (statvfs("/dev/shm", &there) != 0) return true;
@@ -52,7 +52,8 @@ MpiRanks::MpiRanks(MPI_Comm comm, double timeout_s, Function<void()> before_abor
 }
 
 MpiRanks::~MpiRanks() {
-  // To free what is shared takes all ranks: who alone leaves by an exception would wait for them.
+  // Freeing the shared objects takes all ranks, so one that leaves by an exception would wait for
+  // ever.
   if (std::uncaught_exceptions() > exceptions_) return;
   free_window();
   if (node_ != MPI_COMM_NULL) MPI_Comm_free(&node_);
@@ -90,7 +91,7 @@ void MpiRanks::wait(std::span<MPI_Request> requests, const char* what) const {
                    rank_, waited_s, what, phase_.c_str());
       end_job();
     }
-    // An answer that comes soon is found at once; in a long wait the core is left to others.
+    // Poll at first to find a quick answer; in a long wait leave the core to others.
     if (round > 1000)
       std::this_thread::sleep_for(std::chrono::microseconds(100));
     else
@@ -104,7 +105,7 @@ std::uint64_t MpiRanks::max(std::uint64_t value) {
 }
 
 void MpiRanks::max_of_each(std::span<std::uint64_t> values) {
-  // Whatever this rank wrote into shared memory before, the others see after this call.
+  // After this call others see what this rank wrote into shared memory before.
   if (window_ != MPI_WIN_NULL) check(MPI_Win_sync(window_), "writing shared memory");
   MPI_Request request = MPI_REQUEST_NULL;
   check(MPI_Iallreduce(MPI_IN_PLACE, values.data(), static_cast<int>(values.size()), MPI_UINT64_T,
@@ -121,7 +122,7 @@ bool MpiRanks::is_one_node() {
     check(MPI_Comm_set_errhandler(node_, MPI_ERRORS_RETURN), "setting what errors do");
     int here = 0;
     check(MPI_Comm_size(node_, &here), "asking how many are of this machine");
-    one_node_ = here == size_;  // then it is so for all
+    one_node_ = here == size_;  // then for all ranks
   }
   return one_node_;
 }
@@ -139,9 +140,9 @@ std::span<std::uint64_t> MpiRanks::share(std::size_t count) {
     return {};
   if (shared_.size() >= count && window_ != MPI_WIN_NULL) return shared_;
   const std::size_t bytes_of_all = count * sizeof(std::uint64_t);
-  // Asked before: MPI's first rank may leave the others waiting where it finds no room.
+  // Asked first, because MPI may leave the other ranks waiting if the first finds no room.
   if (max(rank_ != 0 || has_room(bytes_of_all) ? 0 : 1) != 0) {
-    // Where a window is held its bytes are missing, which says nothing of the next time.
+    // If a window is held, its bytes are missing; the next call may have room.
     if (window_ == MPI_WIN_NULL) too_much_ = count;
     return {};
   }
@@ -161,7 +162,7 @@ std::span<std::uint64_t> MpiRanks::share(std::size_t count) {
     std::ranges::copy(shared_, static_cast<std::uint64_t*>(memory));
     made = MPI_Win_sync(window) == MPI_SUCCESS;
   }
-  // A window that only some ranks have stays: to free it takes all of them.
+  // A window that only some ranks have is not freed: that takes all of them.
   if (max(made ? 0 : 1) != 0) {
     too_much_ = count;
     return {};
@@ -199,7 +200,7 @@ void MpiRanks::exchange(std::span<const std::span<const std::byte>> to,
     const int target = (rank_ + step) % size_, source = (rank_ - step + size_) % size_;
     std::span<const std::byte> out = to[static_cast<std::size_t>(target)];
     std::span<std::byte> in = from[static_cast<std::size_t>(source)];
-    // Piece k of one rank meets piece k of the other, so nobody waits for a later one.
+    // Both ranks exchange piece k at the same time, so nobody waits for a later one.
     while (!out.empty() || !in.empty()) {
       const std::size_t sent = std::min(out.size(), kMostBytes);
       const std::size_t received = std::min(in.size(), kMostBytes);

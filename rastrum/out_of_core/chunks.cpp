@@ -51,9 +51,9 @@ void Chunks::walk(std::span<const std::size_t> order, const Work& f, const Wante
     const io::FileChunk& chunk = two_[now];
     const Place& at = places_[order[next - 1]];
     now = 1 - now;
-    coming = begin(two_[now]);  // its destructor waits where f throws
+    coming = begin(two_[now]);  // its destructor waits if f throws
     f(chunk, at);
-    file_.check_length();  // positions are read where they lie
+    file_.check_length();  // positions are read from the mapped file
     file_.drop(chunk);
   }
 }

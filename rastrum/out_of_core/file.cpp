@@ -16,9 +16,8 @@
 namespace rastrum {
 namespace {
 
-/// Returns f(), as in_memory does. If it throws, and the file is small, throws the reader's error
-/// for the file, if there is one: refusing to draw a file out of core does not help if the reader
-/// refuses it, too.
+/// Returns f(), as in_memory does. If f throws and the file is small, throws the ordinary reader's
+/// error if there is one: then drawing in core would not help either.
 template <class F>
 auto as_the_reader(const std::filesystem::path& file, const F& f) {
   constexpr std::uintmax_t kSmall = std::uintmax_t{16} << 20;
@@ -79,7 +78,7 @@ OutOfCoreStats OutOfCoreFile::render(const Camera& camera, const FrameOptions& f
 /// The vertices of a file in runs, which threads read.
 class FitOfFile::Vertices final : public FitVertices {
  public:
-  /// `sample`: of the file, placed.
+  /// `sample`: a scene with an instance for each part of the file.
   Vertices(const io::LargeFile& file, const Scene& sample, int threads)
       : file_(file), threads_(threads) {
     for (const Instance& instance : sample.instances)
@@ -103,7 +102,7 @@ class FitOfFile::Vertices final : public FitVertices {
 
  private:
   const io::LargeFile& file_;
-  std::vector<Mat4d> object_to_world_;  ///< of each part
+  std::vector<Mat4d> object_to_world_;  ///< by part
   mutable parallel::Threads threads_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Finds the triangles that share a position with one that is marked. The positions of marked
-// triangles go into a table, by value, since equal positions are one point to crease_normals; then
-// all triangles are looked up. All meshes share one table: a triangle that it marks needlessly is
+// Finds the triangles that share a position with a marked one. A table holds the positions of
+// marked triangles by value, because crease_normals takes equal positions for one point. Then all
+// triangles are looked up. All meshes share one table: a triangle that is marked needlessly is
 // drawn, and hidden again.
 #include <algorithm>
 #include <array>
@@ -15,7 +15,7 @@
 namespace rastrum::out_of_core {
 namespace {
 
-/// Positions, as a set; a filter of bits before it answers for most that are not in it.
+/// A set of positions, behind a bit filter that rejects most others.
 class Points {
  public:
   using Key = std::array<std::uint32_t, 3>;
@@ -23,7 +23,7 @@ class Points {
   explicit Points(std::size_t most)
       : slots_(std::bit_ceil(most * 3 / 2 + 16)), filter_(std::bit_ceil(most / 4 + 1024)) {}
 
-  /// At most as many as the constructor was told.
+  /// Call it at most as often as the constructor was told.
   void add(Vec3 p) {
     const Key key = key_of(p);
     const std::uint64_t h = hash(key);
@@ -50,7 +50,7 @@ class Points {
 
  private:
   static Key key_of(Vec3 p) {
-    return std::bit_cast<Key>(Vec3{p.x + 0.0F, p.y + 0.0F, p.z + 0.0F});  // -0 equals 0
+    return std::bit_cast<Key>(Vec3{p.x + 0.0F, p.y + 0.0F, p.z + 0.0F});  // makes -0 equal 0
   }
   static std::uint64_t hash(const Key& k) {
     std::uint64_t h = (std::uint64_t{k[0]} << 32 | k[1]) * 0x9E3779B97F4A7C15ULL;

@@ -23,22 +23,22 @@
 namespace rastrum::out_of_core {
 namespace {
 
-/// Bytes a triangle while normals with creases are made (crease_normals).
+/// Bytes per triangle while crease normals are made (crease_normals).
 constexpr std::uint64_t kNormalBytes = 130;
-/// How many triangles a chunk has at least and at most.
+/// The least and the most triangles of a chunk.
 constexpr std::uint64_t kLeastChunk = 1, kMostChunk = std::uint64_t{1} << 22;
-/// Bytes a triangle of a chunk: two chunks are there, with 12 bytes of indices and the mapped
+/// Bytes per triangle of a chunk. There are two chunks, with 12 bytes of indices and the mapped
 /// faces.
 constexpr std::uint64_t kChunkBytes = 96;
 
-/// Bytes a triangle of the one pixel whose layers do not fit: its fragments take at most some 180,
-/// and the renderer has a quarter of its scratch for them.
+/// Bytes per triangle of a pixel whose layers may not fit: fragments take at most about 180, and
+/// the renderer has a quarter of its scratch for them.
 constexpr std::uint64_t kLayerBytes = 2000;
 
-/// Bytes that are needed at least beside what is fixed.
+/// The least bytes beside the fixed ones.
 constexpr std::uint64_t kLeastRest = std::uint64_t{24} << 20;
 
-/// Bytes a part: its place, box, instance and node, twice, as the reader makes them.
+/// Bytes per part: place, box, instance and node, twice, because the reader makes them too.
 constexpr std::uint64_t kPartBytes = 4096;
 
 std::uint64_t bytes_of_targets(const Targets& targets) {
@@ -51,7 +51,7 @@ std::uint64_t bytes_of_targets(const Targets& targets) {
   return bytes;
 }
 
-/// Whether what f draws has had memory enough.
+/// Whether f() had enough memory.
 template <class F>
 bool has_memory(const F& f) {
   try {
@@ -67,7 +67,7 @@ bool same(raster::Rect a, raster::Rect b) {
   return a.x0 == b.x0 && a.y0 == b.y0 && a.x1 == b.x1 && a.y1 == b.y1;
 }
 
-/// A part of an image, from its first pixel on.
+/// A part of an image; its first pixel becomes (0, 0).
 template <class T>
 ImageView<T> part_of(ImageView<T> view, raster::Rect part) {
   if (view.empty()) return view;
@@ -77,7 +77,7 @@ Targets part_of(Targets targets, raster::Rect part) {
   ranks::each_target(targets, [&](auto& view, std::uint32_t) { view = part_of(view, part); });
   return targets;
 }
-/// The other way round: its pixels have the places of the picture.
+/// The inverse: pixels are at their places in the picture.
 Targets placed(Targets part, raster::Rect at) {
   ranks::each_target(part, [&](auto& view, std::uint32_t) { view = raster::placed(view, at); });
   return part;
@@ -116,10 +116,10 @@ Scene scene_of(const io::LargeFile& file, const io::FileSelection& selection,
   return scene;
 }
 
-/// Marks the triangles whose fragments it is given, of the pixels of a rectangle.
+/// Marks the triangles whose fragments it receives in a rectangle.
 class Picture::Seen final : public raster::FragmentSink {
  public:
-  /// `selection`: of what a key's ids are; null: of the file.
+  /// `selection`: keys have its ids; null: the file's.
   Seen(Marks& marks, Rect rect, const io::FileSelection* selection = nullptr)
       : FragmentSink(raster::Translucent::keys_to_sink),
         marks_(marks),
@@ -139,7 +139,7 @@ class Picture::Seen final : public raster::FragmentSink {
       if (counts) ++layers(x + i % raster::kBlockSize, y + i / raster::kBlockSize);
     }
   }
-  ImageView<std::uint32_t> layers{};  ///< to count them in, with the places of the picture
+  ImageView<std::uint32_t> layers{};  ///< counts layers, if not empty; in the picture's coordinates
   void mark(std::uint64_t key) {
     const std::uint64_t id = raster::id_of_key(key);
     marks_.add_shared(selection_ == nullptr ? id : selection_->original(id));
@@ -269,12 +269,12 @@ raster::Rect Picture::bins_of(Rect rect) const {
           std::min((rect.y1 + kSide - 1) / kSide * kSide, band_.y1)};
 }
 
-// ---- what is seen
+// ---- Visible triangles
 
 void Picture::survey(const MeshView& triangles, std::size_t part, std::uint64_t first_id, Rect rect,
                      raster::FragmentSink& sink) {
   const std::size_t count = triangles.triangle_count(), half = count / 2;
-  // Keys and marks that it has left are those that its halves leave.
+  // A failed attempt leaves only keys and marks that its halves leave as well.
   if (count < 2) return survey_at_once(triangles, part, first_id, rect, sink);
   if (has_memory([&] { survey_at_once(triangles, part, first_id, rect, sink); })) return;
   const std::pair<std::size_t, std::size_t> halves[] = {{0, half}, {half, count}};
@@ -298,7 +298,7 @@ void Picture::survey_at_once(MeshView mesh, std::size_t part, std::uint64_t firs
   InstanceView instance = scene.instances[part];
   const MeshView& like = *instance.mesh();
   mesh.material = like.material;
-  // Whether colours are translucent is asked of all of them; which is not.
+  // One translucent colour makes all vertices translucent here; which ones are does not matter.
   Vec4 color{1, 1, 1, 1};
   if (!like.colors.empty()) {
     for (std::size_t i = 0; i < like.colors.values.size(); ++i)
@@ -350,7 +350,7 @@ void Picture::sift(Rect rect) {
 }
 
 bool Picture::keys_hide() const {
-  // Some ways of blending let through what lies behind.
+  // Some ways of blending show what lies behind.
   const Transparency method = frame_.transparency.method;
   return frame_.samples == 1 && !translucent_ &&
          (method == Transparency::exact || method == Transparency::none);
@@ -360,7 +360,7 @@ std::vector<std::size_t> Picture::order() const {
   const std::vector<Chunks::Place>& places = chunks_->places();
   std::vector<std::size_t> order = chunks_->in_file();
   if (!keys_hide()) return order;
-  // Keys are the greatest of all, marks are a set: no order changes a bit.
+  // Any order gives the same bits: keys are maxima, and marks are a set.
   std::vector<float> nearest(places.size(), std::numeric_limits<float>::infinity());
   for (const Chunks::Place& at : places)
     if (const std::optional<io::FileBox> box = chunks_->box(at))
@@ -393,7 +393,7 @@ void Picture::find_by_chunks(Rect rect) {
   marks_->clear();
   stats_.dropped = 0;
   std::uint64_t sifted = 0, looked_at = 0;
-  std::uint64_t at_most = 0;  // are marked: who is that few need not be counted
+  std::uint64_t at_most = 0;  // bounds the marks; we count them only when it gets too large
   chunks_->walk(
       order(),
       [&](const io::FileChunk& chunk, const Chunks::Place& at) {
@@ -406,7 +406,7 @@ void Picture::find_by_chunks(Rect rect) {
         looked_at += chunk.count;
         tell("looking for what is seen", looked_at, file_.triangles());
         if (frame_.samples == 1) return;
-        // With several samples a mark is of a chunk's own winners.
+        // With several samples, marks are the winners within each chunk.
         at_most += chunk.count;
         const auto is_to_sift = [&](std::uint64_t count) {
           return bytes_of(count) <= budget_.triangles &&
@@ -447,7 +447,7 @@ bool Picture::find(Rect rect) {
   return fits_at_once(seen_);
 }
 
-// ---- the picture of what is marked
+// ---- The picture of marked triangles
 
 void Picture::draw(Rect rect) {
   const bool fits = find(rect);
@@ -468,11 +468,12 @@ void Picture::try_deepest() {
   const int x = at % frame_.width, y = band_.y0 + at / frame_.width;
   const OutOfCoreStats before = stats_;
   draw({x, y, x + 1, y + 1});
-  stats_ = before;  // it is drawn again with what is around it
+  stats_ = before;  // drawn again with its surroundings
 }
 
 void Picture::split(Rect rect, std::uint64_t pieces) {
-  // Rows of bins, then bins, then what is less than one: the bin is drawn, with fewer triangles.
+  // Into rows of bins, then bins, then parts of a bin, which draw the whole bin with fewer
+  // triangles.
   const int width = rect.x1 - rect.x0, height = rect.y1 - rect.y0;
   if ((width == 1 && height == 1) || frame_.shader == Shader::depth)
     refuse_memory(budget_.fixed + kLeastRest + std::max(bytes_of(seen_) * 2, seen_ * kLayerBytes));
@@ -529,7 +530,7 @@ void Picture::draw_selection(const Scene& scene, const io::FileSelection& select
                              Targets targets, Rect part) {
   const SceneBinding binding(scene);
   Image<std::int64_t> ids;
-  // A primitive's number says what it is only together with its part's.
+  // A primitive's number needs its part's id to be unique.
   if (!targets.primitives.empty() && targets.ids.empty() && selection.parts.size() > 1) {
     ids = Image<std::int64_t>(part.x1 - part.x0, part.y1 - part.y0);
     targets.ids = raster::placed(ids.view(), part);

@@ -17,10 +17,10 @@ namespace {
 
 constexpr std::size_t kAlignment = 64;
 constexpr std::size_t kLargePage = std::size_t{1} << 21;
-/// Smaller blocks are malloc's, which is good at them.
+/// Smaller blocks are left to malloc, which is good at them.
 constexpr std::size_t kSmallestKept = std::size_t{1} << 16;
 
-// The address sanitizer is to see what is used after its release.
+// Nothing is kept under the address sanitizer, so that it sees use after release.
 #if defined(__SANITIZE_ADDRESS__)
 constexpr bool kKeeps = false;
 #elif defined(__has_feature)
@@ -34,7 +34,7 @@ void* system_allocate(std::size_t bytes) noexcept {
   const std::size_t alignment = large ? kLargePage : kAlignment;
   void* const data = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
 #if defined(__linux__)
-  // Advice: what it is not taken for is slower and nothing else.
+  // Only advice: if it fails, the pages are slower.
   if (large && data != nullptr) static_cast<void>(madvise(data, bytes, MADV_HUGEPAGE));
 #endif
   return data;
@@ -90,8 +90,8 @@ void* Arena::allocate(std::size_t bytes) {
   return data;
 }
 
-/// The newest kept block of this size, or where all are kept the smallest up to twice as large:
-/// sizes change from frame to frame, and asking for a block stops the device. kept_.size(): none.
+/// The newest kept block of this size; if the source keeps all, the smallest one up to twice as
+/// large, since sizes change from frame to frame. Returns kept_.size() if none fits.
 std::size_t Arena::fitting(std::size_t size) const {
   std::size_t best = kept_.size();
   for (std::size_t i = kept_.size(); i-- > 0;) {
@@ -123,7 +123,7 @@ void Arena::release(void* block, std::size_t bytes) noexcept {
       kept_bytes_ += size;
       return;
     } catch (const std::bad_alloc&) {
-      // No room to remember it: it goes back.
+      // No memory to remember the block: release it.
     }
   }
   source_.release(block);

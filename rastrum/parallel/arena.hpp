@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The memory of the words: blocks that go back to an arena and come out of it again, so that a
-// frame does not pay for pages that the frame before had. Measured here (Linux in a virtual
-// machine): 80 MiB of fresh 4 KiB pages cost 43 ms, of 2 MiB pages 6.5 ms, of kept ones nothing;
-// sorting 10 M pairs in them takes about 40.
+// The memory of the words. Blocks that a frame returns serve the next one, which saves fresh pages.
+// Measured (Linux in a virtual machine): 80 MiB of fresh 4 KiB pages cost 43 ms, of 2 MiB pages 6.5
+// ms, of kept ones nothing; sorting 10 M pairs in them takes about 40 ms.
 #pragma once
 
 #include <concepts>
@@ -22,42 +21,38 @@ namespace rastrum::parallel {
 
 /// Where an arena's blocks come from. Both functions are thread-safe.
 struct MemorySource {
-  /// Null where there is none; throws Error for what else goes wrong.
+  /// Null where there is no memory; throws Error for other failures.
   void* (*allocate)(std::size_t bytes);
   void (*release)(void* block) noexcept;
   const char* name;  ///< of the memory, in messages
-  /// Asking for a block stops the device: all of any size are kept, and go back only to be asked
-  /// for again in another size.
+  /// Asking for a block stops the device, so the arena keeps all blocks until memory runs out.
   bool keeps_all = false;
 };
 /// The heap; large blocks in large pages.
 [[nodiscard]] MemorySource host_memory();
 
-/// Hands out blocks, and keeps those that come back, up to the most that was out at one time: what
-/// it holds never exceeds that, unless the source is to be asked as seldom as can be. Thread-safe.
-/// Shared by its backend and by the buffers that came from it, whichever lives longest.
+/// Hands out blocks and keeps returned ones for reuse. Unless the source keeps all, it holds at
+/// most what was out at one time. Thread-safe. Shared by its backend and its buffers.
 class Arena {
  public:
-  /// Blocks are accounted to `account`, where there is one, while the arena holds them, handed out
-  /// or not; it must outlive the arena.
+  /// `account`, if any, counts all blocks that the arena holds. It must outlive the arena.
   explicit Arena(MemoryAccount* account = nullptr, MemorySource source = host_memory())
       : account_(account), source_(source) {}
   ~Arena() { trim(); }
   Arena(const Arena&) = delete;
   Arena& operator=(const Arena&) = delete;
 
-  /// At least `bytes`, 64-byte aligned, uninitialized; large ones in large pages where the system
-  /// has them. Sizes are rounded up by at most a quarter, so that frames of about one size fit into
-  /// each other's blocks; where all blocks are kept, one of up to twice the size may come. Throws
-  /// Error{out_of_memory} with what was asked for, and as the source.
+  /// Returns at least `bytes`, 64-byte aligned, uninitialized; large blocks in large pages where
+  /// possible. Rounds up by at most a quarter, or to at most twice the size if the source keeps
+  /// all, so that similar frames reuse blocks. Throws Error{out_of_memory}, and what the source
+  /// throws.
   [[nodiscard]] void* allocate(std::size_t bytes);
   /// Takes back what allocate(bytes) returned.
   void release(void* block, std::size_t bytes) noexcept;
 
-  /// Gives all kept blocks back to the system.
   void trim() noexcept;
 
-  /// Bytes of the blocks that are handed out.
+  /// Bytes handed out.
   [[nodiscard]] std::uint64_t in_use() const;
   /// Bytes of all blocks, and the most that were handed out at one time.
   [[nodiscard]] std::uint64_t held() const;
@@ -78,12 +73,12 @@ class Arena {
   mutable std::mutex mutex_;
   std::vector<Block> kept_;  ///< oldest first
   std::unordered_map<void*, std::size_t>
-      lent_;  ///< bytes; where a block may be larger than asked for
+      lent_;  ///< bytes; only if the source keeps all, where a block may be larger than asked for
   std::uint64_t kept_bytes_ = 0, in_use_ = 0, peak_ = 0;
 };
 
-/// Gives a std::vector memory of an arena, or of the heap where there is none, and leaves elements
-/// without a constructor uninitialized: filling what is about to be written costs as much again.
+/// Gives a std::vector memory of an arena, or of the heap. Elements without a constructor stay
+/// uninitialized, because filling costs as much as the write that follows.
 template <class T>
 class ArenaAllocator {
  public:
@@ -123,9 +118,8 @@ class ArenaAllocator {
   std::shared_ptr<Arena> arena_;
 };
 
-/// The array that words allocate and return: a std::vector whose elements are not initialized
-/// unless they have a constructor. Different threads write neighbouring elements, so these must be
-/// distinct memory; vector<bool>'s are not: return bytes instead.
+/// The array that words allocate and return; elements without a constructor are uninitialized.
+/// vector<bool> is not allowed, because threads write neighbouring elements: use bytes.
 template <class T>
 requires(!std::same_as<T, bool>) using Buffer = std::vector<T, ArenaAllocator<T>>;
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fixed cut of an index range that the words share. The blocks depend on n alone, never on the
-// number of threads: a float reduction, whose result depends on the cut, has the same bits
-// everywhere.
+// How words cut an index range into blocks. The cut depends on n alone, never on the number of
+// threads, so a float reduction has the same bits everywhere.
 #pragma once
 
 #include <algorithm>
@@ -12,15 +11,14 @@
 
 namespace rastrum::parallel {
 
-/// Elements of a block: some microseconds of work for the cheapest functor, well above the price of
-/// a task, and a whole number of 64-bit masks.
+/// Even the cheapest functor takes some microseconds for a block, well above a task's cost. A
+/// multiple of 64, for bit masks.
 inline constexpr std::size_t kBlock = 4096;
 
 [[nodiscard]] constexpr std::size_t block_count(std::size_t n) {
   return (n + kBlock - 1) / kBlock;
 }
 
-/// Calls f(block, begin, end) for one block [begin, end) of [0, n).
 template <class F>
 struct CallWithBlock {
   std::size_t n;

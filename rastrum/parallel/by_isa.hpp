@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// RASTRUM_BY_ISA lists a function's compiled forms by instruction set. For the end of a source that
-// includes itself once a target (HWY_ONCE). Each target has `name` in a namespace of its own;
-// `otherwise` stands for the scalar form, and for targets that this build has not.
+// RASTRUM_BY_ISA lists a function's compiled forms by instruction set. Use it at the end (HWY_ONCE)
+// of a source that includes itself once per target. Each target has `name` in its own namespace;
+// `otherwise` is the scalar form, also used for targets that this build lacks.
 #pragma once
 
 #include <hwy/highway.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/parallel/device.hpp>
 
-// Asks which SIMD targets are compiled as the SIMD sources ask it.
+// Asks for the compiled SIMD targets just as the SIMD sources do.
 #include <rastrum/core/number_text.hpp>
 #include <rastrum/parallel/simd_targets.hpp>
 
@@ -17,7 +17,7 @@ namespace rastrum {
 
 namespace {
 
-/// The name of an enum's value; empty for a value that has none.
+/// The name of an enum's value; empty for a value out of range.
 template <class E>
 std::string_view name_in(std::initializer_list<std::string_view> names, E value) {
   const auto i = static_cast<std::size_t>(value);
@@ -51,8 +51,8 @@ std::string_view name(Isa isa) {
 std::vector<Isa> available_isas() {
   std::vector<Isa> isas{Isa::scalar};
 #if HWY_ARCH_X86
-  // Features that Highway's targets of these names use, as the compiler's runtime knows them. Every
-  // processor with AVX2, BMI2 and FMA has LZCNT and F16C too, which not all compilers can ask for.
+  // The features that Highway's targets of these names use. Every processor with AVX2, BMI2 and FMA
+  // also has LZCNT and F16C, which not all compilers can ask for.
   __builtin_cpu_init();
   const bool sse4 = __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("ssse3") &&
                     __builtin_cpu_supports("aes") && __builtin_cpu_supports("pclmul");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which device and which instructions a renderer takes.
+// Chooses the device and the instruction set of a renderer.
 #pragma once
 
 #include <optional>
@@ -11,15 +11,15 @@ namespace rastrum {
 
 struct DeviceChoice {
   Device device;    ///< not `automatic`
-  std::string why;  ///< what `automatic` went by; empty where a device was asked for
+  std::string why;  ///< why `automatic` chose it; empty where a device was asked for
 };
-/// The device that is had for `wanted`. Throws Error{no_device} with what to do where `cuda` is
-/// asked for and cannot be had, Error{invalid_argument} for a value that is no device.
+/// The device for `wanted`. Throws Error{no_device}, which says what to do, if `cuda` is asked for
+/// and not available, and Error{invalid_argument} for a value that is no device.
 [[nodiscard]] DeviceChoice choose_device(Device wanted);
 
-/// `wanted`, or the best of available_isas(). Every function that is given an instruction set asks
-/// here, so that a missing one is never replaced by plain C++ in silence: throws Error{no_device}
-/// that names the available ones, Error{invalid_argument} for a value that is none.
+/// `wanted`, or the best of available_isas(). Throws Error{no_device}, which names the available
+/// ones, so that plain C++ never silently replaces a missing one; Error{invalid_argument} for a
+/// value that is none.
 [[nodiscard]] Isa choose_isa(std::optional<Isa> wanted);
 
 }  // namespace rastrum

@@ -7,9 +7,9 @@
 namespace rastrum {
 namespace {
 
-/// A kernel that is started and, now and then, waited for.
+/// To start a kernel and, now and then, to wait for it.
 constexpr double kLaunch_ns = 4000;
-/// Bytes a nanosecond of callers' arrays, which are pageable: 7.5 there and 10.7 back of an H100.
+/// Bytes per nanosecond to and from pageable arrays. An H100 has 7.5 to the device and 10.7 back.
 constexpr double kBus = 8;
 
 }  // namespace

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The one place that calls oneTBB's scheduler. The thread sanitizer does not see into libtbb, which
-// Debian builds without it, and would report every hand-over of work as a race. So this file is
-// compiled without the sanitizer (CMakeLists.txt) and tells it what the scheduler guarantees: what
-// the caller did happens before the bodies, and these before what the caller does next. Races
-// between bodies are still found.
+// The one place that calls oneTBB's scheduler. Debian builds libtbb without the thread sanitizer,
+// which would report every hand-over of work as a race. So this file is compiled without it
+// (CMakeLists.txt) and states what the scheduler guarantees: the caller's writes precede the
+// bodies, and these precede what the caller does next. Races between bodies are still found.
 #include <rastrum/parallel/exec.hpp>
 
 #include <algorithm>
@@ -31,7 +30,7 @@ namespace rastrum::parallel {
 namespace {
 
 #if defined(RASTRUM_TSAN)
-/// An edge of happens-before: everything before a `leave` precedes everything after an `enter`.
+/// A happens-before edge: everything before a `leave` precedes everything after an `enter`.
 struct HandOver {
   char address = 0;
   void leave() { __tsan_release(&address); }
@@ -44,7 +43,7 @@ struct HandOver {
 };
 #endif
 
-/// Hands work over at its begin, and back at its end, even when what is between them throws.
+/// Calls `begin` when constructed and `end` when destroyed, so also when something throws.
 template <void (HandOver::*begin)(), void (HandOver::*end)()>
 class Handing {
  public:
@@ -56,13 +55,13 @@ class Handing {
  private:
   HandOver& join_;
 };
-using AroundLoop = Handing<&HandOver::leave, &HandOver::enter>;  ///< by the caller
-using WithinLoop = Handing<&HandOver::enter, &HandOver::leave>;  ///< of one range
+using AroundLoop = Handing<&HandOver::leave, &HandOver::enter>;  ///< for the caller
+using WithinLoop = Handing<&HandOver::enter, &HandOver::leave>;  ///< for one range
 
 thread_local Recording* recording_in_force = nullptr;
 thread_local int pretended_workers = 0;
 
-/// Puts itself between a loop and its body, if the calling thread records.
+/// Wraps a loop's body with one that records, if the calling thread records.
 class RecordedLoop {
  public:
   RecordedLoop(std::size_t n, std::size_t grain, bool in_order, Threads::Body& body, void*& data)
@@ -71,7 +70,7 @@ class RecordedLoop {
     body_ = std::exchange(body, &RecordedLoop::call);
     data_ = std::exchange(data, this);
     loop_ = {Recording::now_ns(), 0, n, grain, in_order, {}};
-    tasks_.resize(n);  // before the clock is read again: one a range at most
+    tasks_.resize(n);  // before the clock is read again; at most one task per index
     loop_.begin_ns = Recording::now_ns();
   }
   ~RecordedLoop() {
@@ -88,7 +87,7 @@ class RecordedLoop {
  private:
   static void call(void* data, std::size_t begin, std::size_t end) {
     RecordedLoop& self = *static_cast<RecordedLoop*>(data);
-    // Nothing is recorded within a body, also of one that throws.
+    // Nothing is recorded within a body, even if it throws.
     const RecordScope within(nullptr, self.recording_->workers);
     const std::int64_t from = Recording::now_ns();
     self.body_(self.data_, begin, end);
@@ -104,9 +103,9 @@ class RecordedLoop {
   std::atomic<std::size_t> count_ = 0;
 };
 
-/// The number of threads that the system starts, at most `wanted`. oneTBB ends the program if it
-/// cannot start its workers (ulimit -u, a container's limit), so we try before. Remembers the
-/// greatest number that worked.
+/// How many threads the system can start, at most `wanted`. oneTBB ends the program if it cannot
+/// start its workers (ulimit -u, a container's limit), so we try first. Remembers the greatest
+/// number that worked.
 int startable(int wanted) {
   static std::atomic<int> known = 0;
   if (wanted <= known) return wanted;
@@ -115,7 +114,7 @@ int startable(int wanted) {
   try {
     while (static_cast<int>(started.size()) < wanted)
       started.emplace_back([&] { all_are_there.wait(false); });
-  } catch (const std::exception&) {  // then those that have started must do
+  } catch (const std::exception&) {  // use those that have started
   }
   all_are_there = true;
   all_are_there.notify_all();
@@ -124,7 +123,7 @@ int startable(int wanted) {
   return count;
 }
 
-/// `count`, 0 for all; fewer if the system does not start so many.
+/// `count` (0 for all cores), or fewer if the system cannot start so many.
 int limited(int count) {
   const int wanted = (count > 0 ? count : tbb::this_task_arena::max_concurrency()) - 1;
   const int there = startable(wanted);
@@ -164,7 +163,7 @@ int Threads::concurrency() const {
   return pretended_workers > 0 ? pretended_workers : scheduler_->arena.max_concurrency();
 }
 
-/// Ranges of at most `grain` indices, of which share(begin, end) may leave some to another.
+/// Calls share(begin, end, stopped) for ranges of at most `grain` indices.
 template <class Share>
 void Threads::loop(std::size_t n, std::size_t grain, const Share& share) {
   const StopToken* const stop = StopScope::current();
@@ -185,7 +184,7 @@ void Threads::loop(std::size_t n, std::size_t grain, const Share& share) {
           tbb::simple_partitioner{});
     });
   }
-  // Ranges may have been left out: nothing that follows is to see their results.
+  // Some ranges may have been skipped, so nobody may see the results.
   if (stopped()) throw Stopped{};
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// expand: flattens segments. Element i stands for a segment of size(in[i]) elements, and the result
-// is get(in[i], j) for all j in [0, size(in[i])), segment after segment.
+// expand: flattens segments. Element i stands for size(in[i]) results, which are get(in[i], j) for
+// j in [0, size(in[i])), segment after segment.
 //
-// Work O(n + total), span O(kBlock + log n): the threads cut the result, not the segments
-// (expand_each.hpp), so one huge segment and millions of small ones are divided alike. Paper 5
-// fills the gaps with a maximum scan instead. Allocates the result and, with threads, 8 bytes per
-// segment. Source: paper 1, section 2.2.2; paper 5, appendix A, algorithm 1.
+// Work O(n + total), span O(kBlock + log n). Threads cut the result, not the segments
+// (expand_each.hpp). Paper 5 fills the gaps with a maximum scan instead. Allocates the result and,
+// with threads, 8 bytes per segment. Source: paper 1, section 2.2.2; paper 5, appendix A, algorithm
+// 1.
 #pragma once
 
 #include <cstddef>
@@ -21,8 +21,8 @@ template <class In, class Get>
 using expanded_t = std::remove_cvref_t<
     std::invoke_result_t<Get&, decltype(std::declval<const In&>()[0]), std::size_t>>;
 
-/// Calls size(in[i]) → integer ≥ 0 once per segment and get(in[i], j) once per element of the
-/// result; both must be pure.
+/// Calls size(in[i]) → integer ≥ 0 once per segment and get(in[i], j) once per result; both must be
+/// pure.
 template <Readable In, class Size, class Get>
 [[nodiscard]] Buffer<expanded_t<In, Get>> expand(Serial& exec, const In& in, Size&& size,
                                                  Get&& get) {

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// expand_each: an expansion that is walked instead of written. Like expand it makes one element of
-// the result out of segment i and j in [0, size(in[i])), but hands (in[i], j) to a sink; nothing of
-// the result is held in memory. Where a sink must know how much there is before it writes, the
-// expansion is walked twice.
+// expand_each: an expansion that is walked instead of written. It hands (in[i], j) for each j in
+// [0, size(in[i])) to a sink, and stores no results.
 //
-// The results are cut into chunks of equal size, whose number is known beforehand. The cut depends
-// on the segment sizes and `per_chunk` alone: at every walk, on every backend, with any number of
-// threads a chunk holds the same results in the same order. So a first walk can count what each
-// chunk has to say, a scan gives the chunks their places, and a second walk writes. One huge
-// segment is balanced as well as millions of small ones; a chunk finds its first segment by binary
-// search.
+// Chunks of equal size divide the results. The cut depends on the segment sizes and `per_chunk`
+// alone, so a chunk is the same at every walk, on every backend, with any number of threads. A sink
+// that needs its number of outputs beforehand walks twice: the first walk counts per chunk, a scan
+// finds the places, the second walk writes. A chunk finds its first segment by binary search, so
+// one huge segment is balanced as well as millions of small ones.
 //
 // Work O(n + total), span O(per_chunk + log n). Allocates 8 bytes per segment.
 // Source: expand is paper 1, section 2.2.2; the walk without an array is ours.
@@ -29,7 +26,7 @@ namespace rastrum::parallel {
 
 namespace expand_detail {
 
-/// The size of a segment, as a functor that a device can call.
+/// The size of a segment, as a functor for devices.
 template <class Size>
 struct SizeOf {
   Size size;
@@ -39,7 +36,7 @@ struct SizeOf {
   }
 };
 
-/// The last place in the ascending `first` whose value is ≤ `value`; first[0] ≤ value.
+/// The last index in the ascending `first` whose value is ≤ `value`. Requires first[0] ≤ value.
 template <class First>
 [[nodiscard]] RASTRUM_HD constexpr std::size_t last_at_most(const First& first, std::size_t value) {
   std::size_t low = 0;
@@ -53,17 +50,15 @@ template <class First>
 
 }  // namespace expand_detail
 
-/// Results of a chunk where the caller does not say: one thread makes them.
+/// The default number of results per chunk; one thread makes them.
 template <class Exec>
 inline constexpr std::size_t kResultsPerChunk = kBlock;
 
-/// How many results there are, and their cut into chunks of equal size.
 class ChunkCut {
  public:
   ChunkCut(std::size_t size, std::size_t per_chunk) : size_(size), per_chunk_(per_chunk) {
     assert(per_chunk > 0);
   }
-  /// Number of results.
   [[nodiscard]] RASTRUM_HD std::size_t size() const { return size_; }
   [[nodiscard]] RASTRUM_HD std::size_t per_chunk() const { return per_chunk_; }
   [[nodiscard]] RASTRUM_HD std::size_t chunks() const {
@@ -83,8 +78,8 @@ class ChunkCut {
   std::size_t size_, per_chunk_;
 };
 
-/// Where the results of each segment lie, and how they are cut into chunks. `First` is an array of
-/// numbers: a backend's buffer, or a view of one.
+/// Where each segment's results lie, and their cut into chunks. `First` is an array of numbers: a
+/// backend's buffer, or a view of one.
 template <class First>
 class BasicExpansion : public ChunkCut {
  public:
@@ -104,14 +99,14 @@ class BasicExpansion : public ChunkCut {
   }
 
   [[nodiscard]] RASTRUM_HD std::size_t segments() const { return first_.size(); }
-  /// The result with which segment i begins: first(i) + j is made from its j.
+  /// The first result of segment i; first(i) + j is the result of its j.
   [[nodiscard]] RASTRUM_HD std::size_t first(std::size_t i) const { return first_[i]; }
   [[nodiscard]] RASTRUM_HD std::size_t segment_end(std::size_t i) const {
     return i + 1 < first_.size() ? first_[i + 1] : size();
   }
   /// The segment that makes `result`; requires result < size(). O(log n).
   [[nodiscard]] RASTRUM_HD std::size_t segment_of(std::size_t result) const {
-    // Empty segments begin where the next one does: the last of them is meant.
+    // Empty segments begin where the next one does, so we want the last of them.
     return expand_detail::last_at_most(first_, result);
   }
 
@@ -120,14 +115,14 @@ class BasicExpansion : public ChunkCut {
 };
 using Expansion = BasicExpansion<Buffer<std::size_t>>;
 
-/// The expansion of a backend, for listings that are written for any.
+/// The expansion for any backend.
 template <class Exec, Readable In, class Size>
 [[nodiscard]] auto make_expansion(Exec& exec, const In& in, const Size& size,
                                   std::size_t per_chunk = kResultsPerChunk<Exec>) {
   return BasicExpansion<decltype(make_buffer<std::size_t>(exec, 0))>(exec, in, size, per_chunk);
 }
 
-/// One chunk of an expansion, to be walked in order. Borrows the expansion and its input.
+/// One chunk, walked in order. Refers to the expansion and its input.
 template <class In, class Plan = Expansion>
 class ExpansionChunk {
  public:
@@ -135,13 +130,12 @@ class ExpansionChunk {
       : expansion_(&expansion), in_(&in), index_(index) {}
 
   [[nodiscard]] RASTRUM_HD std::size_t index() const { return index_; }
-  /// The results it holds: begin() is the number of the first one.
+  /// Its results are [begin(), end()).
   [[nodiscard]] RASTRUM_HD std::size_t begin() const { return expansion_->chunk_begin(index_); }
   [[nodiscard]] RASTRUM_HD std::size_t end() const { return expansion_->chunk_end(index_); }
   [[nodiscard]] RASTRUM_HD std::size_t size() const { return end() - begin(); }
 
-  /// Calls f(in[i], j_begin, j_end) for each segment's share of the chunk, which is not empty: for
-  /// sinks that have something to do once per segment.
+  /// Calls f(in[i], j_begin, j_end) for each segment's non-empty share of the chunk.
   template <class F>
   RASTRUM_HD void each_run(F&& f) const {
     const std::size_t stop = end();
@@ -169,8 +163,8 @@ class ExpansionChunk {
   std::size_t index_;
 };
 
-/// Calls f(chunk) for each chunk of an expansion of `in`, each by one thread, in any order: for
-/// sinks that hold something per chunk (a counter in a register, a buffer that is flushed).
+/// Calls f(chunk) for each chunk of the expansion of `in`, in any order, each on one thread: for
+/// sinks with something per chunk (a counter in a register, a buffer to flush).
 template <class Exec, Readable In, class F>
 void expand_chunks(Exec& exec, const Expansion& expansion, const In& in, F&& f) {
   assert(std::size(in) == expansion.segments());
@@ -178,8 +172,8 @@ void expand_chunks(Exec& exec, const Expansion& expansion, const In& in, F&& f) 
                  [&](std::size_t c) { f(ExpansionChunk<In>(expansion, in, c)); });
 }
 
-/// Calls f(chunk, in[i], j) for each result, in order within a chunk; chunk < expansion.chunks() is
-/// its number. Calls of one chunk come from one thread.
+/// Calls f(chunk, in[i], j) for each result, with the chunk's number. One thread makes a chunk's
+/// calls, in order.
 template <class Exec, Readable In, class F>
 void expand_each(Exec& exec, const Expansion& expansion, const In& in, F&& f) {
   expand_chunks(exec, expansion, in, [&](const ExpansionChunk<In>& chunk) {

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// expand_masked: an expansion that leaves out the elements for which a predicate does not hold,
-// without ever writing them: get(in[i], j) for those j in [0, size(in[i])) with holds(in[i], j).
+// expand_masked: expand, but only the results for which holds(in[i], j).
 //
-// A first pass records the predicate in bit masks, whose ranks say how much there is to write; a
-// second one walks their bits (masked_expansion.hpp, also for segments longer than a mask).
+// A first pass records the predicate in bit masks, whose ranks count the results. A second pass
+// walks the set bits (masked_expansion.hpp).
 //
 // Work O(n + Σ size + result), span O(kBlock + log n). Allocates the result and, with threads, 8
-// bytes per segment, kBits / 8 per mask and 8 for every 4096 elements.
-// The default of 64 bits is measured (docs/log/words.md).
+// bytes per segment, kBits / 8 per mask and 8 for every 4096 elements. The default of 64 bits is
+// measured (docs/log/words.md).
 // Source: paper 1, section 3.1.2.
 #pragma once
 
@@ -19,7 +18,7 @@
 
 namespace rastrum::parallel {
 
-/// Calls size and holds, which must be pure, and get once per element of the result.
+/// Calls size and holds, which must be pure, and calls get once per result.
 template <int kBits = 64, Readable In, class Size, class Holds, class Get>
 [[nodiscard]] Buffer<expanded_t<In, Get>> expand_masked(Serial& exec, const In& in, Size&& size,
                                                         Holds&& holds, Get&& get) {

@@ -12,8 +12,8 @@
 
 namespace rastrum::parallel {
 
-/// The predicate is called once per element. Indices instead of elements: filter(exec, counting(n),
-/// predicate of the index).
+/// Calls the predicate once per element. For indices use filter(exec, counting(n), predicate of the
+/// index).
 template <Readable In, class Predicate>
 [[nodiscard]] Buffer<element_t<In>> filter(Serial& exec, const In& in, Predicate&& holds) {
   auto out = make_buffer<element_t<In>>(exec);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// for_each: f(range[i]) for all elements, for what f does to them.
+// for_each: calls f(range[i]) for all elements, for its side effects.
 //
-// Work O(n), span O(kBlock + log n). Allocates nothing. For the indices themselves see
-// for_each_index (exec.hpp).
+// Work O(n), span O(kBlock + log n). Allocates nothing. For indices see for_each_index (exec.hpp).
 #pragma once
 
 #include <cstddef>
@@ -12,7 +11,7 @@
 
 namespace rastrum::parallel {
 
-/// f is called once per element, in any order; it gets what range[i] is, a reference as a rule.
+/// Calls f once per element, in any order.
 template <class Exec, Readable Range, class F>
 void for_each(Exec& exec, Range&& range, F&& f) {
   for_each_block(exec, std::size(range), [&](std::size_t, std::size_t begin, std::size_t end) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Bit masks of 8 to 256 bits with the three operations that expand_masked needs: set, rank, select.
 //
-// Source: paper 1, section 3.1.1. The base clears lowest bits; wider words halve; beyond 64 bits a
-// mask is a pair of masks, so that rank and select cost O(log bits).
+// Source: paper 1, section 3.1.1. select clears lowest bits in up to 8 bits and halves wider words.
+// Beyond 64 bits a mask is a pair of masks, so that rank and select cost O(log bits).
 #pragma once
 
 #include <bit>
@@ -20,7 +20,7 @@ RASTRUM_HD constexpr int popcount(std::uint64_t bits) {
 #elif defined(__POPCNT__) || defined(__aarch64__)
   return std::popcount(bits);
 #else
-  // The baseline of x86-64 has no instruction for it, and libgcc's table took a tenth of a frame of
+  // Baseline x86-64 has no such instruction, and libgcc's table took a tenth of a frame of
   // `scanline` × `sorted`. Sums of 2, 4, 8 bits, then of the bytes (Knuth, TAOCP 4A, 7.1.3).
   bits -= bits >> 1 & 0x5555555555555555U;
   bits = (bits & 0x3333333333333333U) + (bits >> 2 & 0x3333333333333333U);
@@ -38,8 +38,8 @@ RASTRUM_HD constexpr int lowest_bit(std::uint64_t bits) {
 #endif
 }
 
-/// Index of the set bit that has k set bits below it, within the low `kWidth` bits.
-/// Requires 0 ≤ k < their number.
+/// Index of the set bit that has k set bits below it, within the low `kWidth` bits. Requires 0 ≤ k
+/// < the number of set bits.
 template <int kWidth>
 RASTRUM_HD constexpr int select_bit(std::uint64_t bits, int k) {
   if constexpr (kWidth <= 8) {
@@ -59,8 +59,8 @@ class Mask {
 
  public:
   static constexpr int size() { return kBits; }
-  /// The i < n for which holds(i), asked once each, ascending; 0 ≤ n ≤ kBits. Without branches:
-  /// what holds is what cannot be predicted.
+  /// The i < n for which holds(i), called once each in ascending order; 0 ≤ n ≤ kBits. Without
+  /// branches, because they would be unpredictable.
   template <class Holds>
   [[nodiscard]] RASTRUM_HD static constexpr Mask of(int n, Holds&& holds) {
     Mask mask;
@@ -74,7 +74,7 @@ class Mask {
   }
   /// Number of elements.
   [[nodiscard]] RASTRUM_HD constexpr int rank() const { return low_.rank() + high_.rank(); }
-  /// Number of elements < i; 0 ≤ i ≤ kBits. The inverse of select: rank(select(k)) = k.
+  /// Number of elements < i; 0 ≤ i ≤ kBits. rank(select(k)) = k.
   [[nodiscard]] RASTRUM_HD constexpr int rank(int i) const {
     return i <= kHalf ? low_.rank(i) : low_.rank() + high_.rank(i - kHalf);
   }
@@ -107,7 +107,7 @@ requires(kBits == 8 || kBits == 16 || kBits == 32 || kBits == 64) class Mask<kBi
   template <class Holds>
   [[nodiscard]] RASTRUM_HD static constexpr Mask of(int n, Holds&& holds) {
     assert(n >= 0 && n <= kBits);
-    // Shifted down from the top, because a shift by a constant is cheaper than one by i.
+    // Shifts down from the top, because a shift by a constant is cheaper than one by i.
     std::uint64_t bits = 0;
     for (int i = 0; i < n; ++i) bits = bits >> 1 | std::uint64_t{static_cast<bool>(holds(i))} << 63;
     Mask mask;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A masked expansion: an expand_masked that is walked, a chunk at a time, instead of written; for
-// the chunks see expand_each. The predicate is asked once per element and remembered as a bit. So
-// the results are counted before the first walk, chunks hold equal numbers of them however unevenly
-// they lie, and the results of chunk c are those from c · per_chunk on: a sink that writes one
-// thing per result needs no counting walk.
+// A masked expansion: expand_masked, walked by chunks as in expand_each instead of written. The
+// predicate runs once per element and is kept as a bit. So results are counted before the first
+// walk, all chunks hold equally many, and chunk c begins with result c · per_chunk: a sink with one
+// output per result needs no counting walk.
 //
-// Segments of any length: an expansion cuts them into masks of kBits, another one, of the masks'
-// ranks, is found again by select (paper 1 has one mask per segment, which bounds it).
+// Segments have any length: an expansion cuts them into masks of kBits. (Paper 1 has one mask per
+// segment, which bounds its length.)
 //
 // Work O(n + Σ size + results), span O(kBlock + per_chunk + log n). Allocates 8 bytes per segment,
 // kBits / 8 per mask and 8 for every 4096 elements; nothing per result.
@@ -34,13 +33,13 @@ struct MasksFor {
   }
 };
 
-/// Asks the predicate for the masks of a group and counts what holds.
+/// Fills the masks of a group from the predicate and counts the set bits.
 template <int kBits, class Size, class Holds>
 struct FillMasks {
   Size size;
   Holds holds;
   std::span<Mask<kBits>> masks;
-  std::span<std::size_t> counts;  ///< of each group
+  std::span<std::size_t> counts;  ///< one for each group
   template <class Chunk>
   RASTRUM_HD void operator()(const Chunk& group) const {
     std::size_t m = group.begin(), count = 0;
@@ -61,16 +60,17 @@ struct FillMasks {
 
 }  // namespace masked_detail
 
-/// Elements whose predicate one thread asks: as many as a block has.
+/// Elements whose predicate one thread asks.
 template <class Exec>
 inline constexpr std::size_t kElementsPerGroup = kBlock;
 
-/// Which elements of all segments hold, and how those are cut into chunks. `Masks` and `Numbers`
-/// are a backend's buffers, or views of them.
+/// The elements for which the predicate holds, and their cut into chunks. `Masks` and `Numbers` are
+/// a backend's buffers, or views of them.
 template <int kBits, class Masks, class Numbers>
 class BasicMaskedExpansion : public ChunkCut {
  public:
-  /// Calls size and holds(in[i], j) once; both must be pure. Requires per_chunk > 0.
+  /// Calls size, and once for each element holds(in[i], j); both must be pure. Requires per_chunk >
+  /// 0.
   template <class Exec, Readable In, class Size, class Holds>
   BasicMaskedExpansion(Exec& exec, const In& in, const Size& size, const Holds& holds,
                        std::size_t per_chunk = kResultsPerChunk<Exec>)
@@ -136,7 +136,7 @@ class BasicMaskedExpansion : public ChunkCut {
 template <int kBits>
 using MaskedExpansion = BasicMaskedExpansion<kBits, Buffer<Mask<kBits>>, Buffer<std::size_t>>;
 
-/// The masked expansion of a backend, for listings that are written for any.
+/// The masked expansion for any backend.
 template <int kBits = 64, class Exec, Readable In, class Size, class Holds>
 [[nodiscard]] auto make_masked_expansion(Exec& exec, const In& in, const Size& size,
                                          const Holds& holds,
@@ -146,7 +146,7 @@ template <int kBits = 64, class Exec, Readable In, class Size, class Holds>
                                                                            per_chunk);
 }
 
-/// One chunk of a masked expansion, to be walked in order. Borrows the expansion and its input.
+/// As ExpansionChunk.
 template <int kBits, class In, class Plan = MaskedExpansion<kBits>>
 class MaskedChunk {
  public:
@@ -154,12 +154,10 @@ class MaskedChunk {
       : expansion_(&expansion), in_(&in), index_(index) {}
 
   [[nodiscard]] RASTRUM_HD std::size_t index() const { return index_; }
-  /// The results it holds: begin() is the number of the first one.
   [[nodiscard]] RASTRUM_HD std::size_t begin() const { return expansion_->chunk_begin(index_); }
   [[nodiscard]] RASTRUM_HD std::size_t end() const { return expansion_->chunk_end(index_); }
   [[nodiscard]] RASTRUM_HD std::size_t size() const { return end() - begin(); }
 
-  /// Calls f(in[i], j) for each result of the chunk.
   template <class F>
   RASTRUM_HD void each(F&& f) const {
     expansion_->walk(*in_, begin(), end(), f);
@@ -171,7 +169,7 @@ class MaskedChunk {
   std::size_t index_;
 };
 
-/// Calls f(chunk) for each chunk of an expansion of `in`, each by one thread, in any order.
+/// As for an expansion without masks.
 template <class Exec, int kBits, Readable In, class F>
 void expand_chunks(Exec& exec, const MaskedExpansion<kBits>& expansion, const In& in, F&& f) {
   assert(std::size(in) == expansion.segments());

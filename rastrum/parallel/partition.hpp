@@ -15,10 +15,10 @@ namespace rastrum::parallel {
 template <class T>
 struct Partition {
   Buffer<T> elements;
-  std::size_t first_count = 0;  ///< how many of them the predicate holds for
+  std::size_t first_count = 0;  ///< the number of elements for which the predicate holds
 };
 
-/// The predicate is called once per element.
+/// Calls the predicate once per element.
 template <Readable In, class Predicate>
 [[nodiscard]] Partition<element_t<In>> partition(Serial& exec, const In& in, Predicate&& holds) {
   Partition<element_t<In>> out{make_buffer<element_t<In>>(exec)};

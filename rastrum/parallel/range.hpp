@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ranges, which words read and write: anything with a size and an operator[]. Vectors, arrays and
-// spans are ranges; so are the small ones below, which are computed where they are read (paper 5,
-// appendix A: counting, permute, constant), so that no word needs a second form for them.
+// Ranges, which words read and write, have a size and an operator[]: vectors, arrays, spans. The
+// small ones below compute their elements when read (paper 5, appendix A: counting, permute,
+// constant), so that no word needs a second form for them.
 #pragma once
 
 #include <concepts>
@@ -33,7 +33,7 @@ concept Writable = requires(R& r, std::size_t i) {
 }
 &&!std::same_as<std::remove_cvref_t<R>, std::vector<bool>>;
 
-/// i ↦ f(i) for i in [0, n), computed at every reading.
+/// i ↦ f(i) for i in [0, n), computed at every read.
 template <class F>
 class Computed {
  public:
@@ -50,7 +50,7 @@ class Computed {
 
 namespace range_detail {
 
-// Named, for a kernel's arguments may not have the type of a lambda of the host.
+// These are named, because a kernel's arguments may not have the type of a host lambda.
 template <class Integer>
 struct IndexItself {
   [[nodiscard]] RASTRUM_HD constexpr Integer operator()(std::size_t i) const {
@@ -69,7 +69,7 @@ template <class T>
 inline constexpr bool kIsView<std::span<T>> = true;
 template <class F>
 inline constexpr bool kIsView<Computed<F>> = true;
-/// A view is copied, which a device needs; what owns its elements is referred to.
+/// Views are copied, as devices require; containers are referred to.
 template <class R>
 using borrowed_t = std::conditional_t<kIsView<R>, R, const R&>;
 
@@ -96,13 +96,13 @@ template <class T>
   return Computed(n, range_detail::SameValue<T>{value});
 }
 
-/// source[map[i]]; borrows both.
+/// source[map[i]]; refers to both, or copies them if they are views.
 template <Readable Source, Readable Map>
 [[nodiscard]] RASTRUM_HD constexpr auto permuted(const Source& source, const Map& map) {
   return Computed(std::size(map), range_detail::ReadThrough<Source, Map>{source, map});
 }
 
-/// A reference to a range that has no data(): its elements are read where they lie.
+/// Refers to a range without data().
 template <class R>
 struct Referred {
   R* range;
@@ -110,8 +110,7 @@ struct Referred {
   [[nodiscard]] constexpr decltype(auto) operator[](std::size_t i) const { return (*range)[i]; }
 };
 
-/// A range as a named functor holds it, cheap to copy: a span of what owns its elements, and a copy
-/// of what is a view. It must not outlive the range.
+/// A cheap copy for functors: a span of a container, a copy of a view. The range must outlive it.
 template <class R>
 [[nodiscard]] constexpr auto view_of(R&& range) {
   using Plain = std::remove_cvref_t<R>;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Records what the loops of a backend do, and when, to find what keeps a frame from using more
-// threads (`rastrum bench replay`).
+// Records what a backend's loops do and when, to find what limits a frame's use of threads
+// (`rastrum bench replay`).
 //
-// Cost: none without a scope but a look at a thread-local pointer a loop; with one two readings of
-// the clock a body, and 32 bytes.
+// Cost: without a scope one read of a thread-local pointer per loop; with one, two clock readings
+// and 32 bytes per body.
 #pragma once
 
 #include <chrono>
@@ -13,22 +13,22 @@
 
 namespace rastrum::parallel {
 
-/// The loops that a thread began on Threads within a RecordScope, in order. A loop within a body is
-/// part of it. Times are in ns of the steady clock.
+/// The loops that a thread began on Threads within a RecordScope, in order. Inner loops count as
+/// part of a body. Times are in ns of the steady clock.
 struct Recording {
   struct Task {
-    std::size_t begin, end;  ///< indices that one body was called for
+    std::size_t begin, end;  ///< indices of one call of the body
     std::int64_t begin_ns, end_ns;
   };
   struct Loop {
     std::int64_t begin_ns, end_ns;  ///< on the thread that began it
     std::size_t n, grain;
-    bool in_order;            ///< by for_each_in_order: whoever is free takes the next index
-    std::vector<Task> tasks;  ///< in the order in which they began; together they are [0, n)
+    bool in_order;            ///< by for_each_in_order
+    std::vector<Task> tasks;  ///< by begin_ns; together they are [0, n)
   };
   std::vector<Loop> loops;
-  /// Threads::concurrency returns this within the scope, so that a run on one thread cuts its work
-  /// as one on so many would; 0: the true number.
+  /// Threads::concurrency returns this within the scope, so that one thread cuts its work as this
+  /// many would; 0: the true number.
   int workers = 0;
 
   [[nodiscard]] static std::int64_t now_ns() {
@@ -38,7 +38,7 @@ struct Recording {
   }
 };
 
-/// While it lives, the loops that this thread begins are recorded.
+/// While it lives, this thread's loops are recorded.
 class RecordScope {
  public:
   /// `recording` must outlive the scope.
@@ -50,7 +50,7 @@ class RecordScope {
   RecordScope(const RecordScope&) = delete;
   RecordScope& operator=(const RecordScope&) = delete;
 
-  /// That of the calling thread, or null: none, or the thread is within a recorded body.
+  /// The calling thread's recording; null without a scope or within a recorded body.
   [[nodiscard]] static Recording* current() noexcept;
 
  private:

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // reduce: in[0] op in[1] op … op in[n − 1].
 //
-// The operator must be associative; it need not commute. Where it is associative only up to
-// rounding the result is still one: each block of kBlock elements is folded from the left, then the
-// blocks' results are, whatever the backend and the number of threads. Work O(n), span O(kBlock + n
-// / kBlock). Threads allocate one T per block. Source: Blelloch's primitives as in paper 1,
-// section 2.2.2.
+// The operator must be associative; it need not commute. Even if it is so only up to rounding, the
+// result depends neither on the backend nor on the threads: each block of kBlock elements is folded
+// from the left, then the blocks' results are. Work O(n), span O(kBlock + n / kBlock). Threads
+// allocate one T per block. Source: Blelloch's primitives as in paper 1, section 2.2.2.
 #pragma once
 
 #include <cstddef>
@@ -25,8 +24,7 @@ template <class T, Readable In, class Op>
   return sum;
 }
 
-/// `initial` (as a rule the neutral element) is put before everything. Computes in its type, to
-/// which the elements are converted.
+/// `initial`, usually the neutral element, comes first. Elements are converted to its type.
 template <Readable In, class T, class Op = std::plus<>>
 [[nodiscard]] T reduce(Serial& exec, const In& in, T initial, Op op = {}) {
   for_each_block(exec, std::size(in), [&](std::size_t, std::size_t begin, std::size_t end) {

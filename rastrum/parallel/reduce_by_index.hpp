@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // reduce_by_index: a generalized histogram. For each i, dest[indices[i]] op= values[i].
 //
-// Indices outside of `dest` are ignored, as in Futhark. The operator must be associative; values of
-// one bin are folded in their order.
-// The 64-bit unsigned maximum, which resolves visibility, is atomic and in place: order does not
-// matter to it. Any other operator sorts the indices and reduces runs (reduce_by_key, whose cut
-// makes one result also where the operator is associative only up to rounding): deterministic, and
-// no bin is contended, however many values it gets.
+// Indices outside of `dest` are ignored, as in Futhark. The operator must be associative; a bin's
+// values are folded in order. The 64-bit unsigned maximum, which resolves visibility, needs no
+// order: it is atomic and in place. Other operators sort the indices and reduce runs
+// (reduce_by_key), so that no bin is contended.
 //
 // Work O(n), for other operators O(n · log dest) bit operations in the sort; span O(kBlock + n /
 // threads). Allocates nothing, or for other operators 48 bytes and two values per index in range.
@@ -33,7 +31,6 @@
 
 namespace rastrum::parallel {
 
-/// The larger of two.
 struct Maximum {
   template <class T>
   [[nodiscard]] RASTRUM_HD constexpr T operator()(const T& a, const T& b) const {
@@ -41,7 +38,7 @@ struct Maximum {
   }
 };
 
-/// word = max(word, value), by many threads at once.
+/// word = max(word, value), atomically.
 RASTRUM_HD inline void atomic_maximum(std::uint64_t& word, std::uint64_t value) noexcept {
 #if defined(__CUDA_ARCH__)
   static_assert(sizeof(unsigned long long) == sizeof(std::uint64_t));
@@ -54,7 +51,7 @@ RASTRUM_HD inline void atomic_maximum(std::uint64_t& word, std::uint64_t value) 
 #endif
 }
 
-/// word += value, by many threads at once; returns what it was.
+/// word += value, atomically; returns the old value.
 template <class T>
 requires(std::same_as<T, std::uint32_t> || std::same_as<T, std::uint64_t>) RASTRUM_HD inline T
     atomic_add(T& word, T value) noexcept {
@@ -66,9 +63,8 @@ requires(std::same_as<T, std::uint32_t> || std::same_as<T, std::uint64_t>) RASTR
 #endif
 }
 
-/// sum += value, by many threads at once, of which none reads the sum meanwhile. A warp's small
-/// values are added up before one thread of it goes to memory: 32 atomics of one address take 32
-/// turns.
+/// sum += value, atomically, while no thread reads the sum. A warp adds up its small values, then
+/// one of its threads goes to memory, because 32 atomics on one address take 32 turns.
 RASTRUM_HD inline void add_to_sum(std::uint64_t& sum, std::uint64_t value) noexcept {
 #if defined(__CUDA_ARCH__)
   constexpr std::uint64_t kSmall = std::uint64_t{1} << 26;  // 32 of them fit 32 bits
@@ -83,8 +79,7 @@ RASTRUM_HD inline void add_to_sum(std::uint64_t& sum, std::uint64_t value) noexc
   atomic_add(sum, value);
 }
 
-/// word = max(word, value), by many threads at once: as add_to_sum, a thread of a warp goes to
-/// memory.
+/// word = max(word, value), atomically, with one memory access per warp as in add_to_sum.
 RASTRUM_HD inline void raise_maximum(std::uint64_t& word, std::uint32_t value) noexcept {
 #if defined(__CUDA_ARCH__)
   const unsigned here = __activemask();
@@ -96,8 +91,8 @@ RASTRUM_HD inline void raise_maximum(std::uint64_t& word, std::uint32_t value) n
 #endif
 }
 
-/// The next place of a queue of which `count` are taken, for many threads at once: those of a warp
-/// that ask together ask once. May be beyond the queue's room.
+/// Atomically takes the next place of a queue of which `count` are taken; it may lie beyond the
+/// queue's room. Threads of a warp that ask together use one atomic.
 [[nodiscard]] RASTRUM_HD inline std::uint64_t take_place(std::uint64_t& count) noexcept {
 #if defined(__CUDA_ARCH__)
   const unsigned here = __activemask(), lane = threadIdx.x % 32;
@@ -112,8 +107,7 @@ RASTRUM_HD inline void raise_maximum(std::uint64_t& word, std::uint32_t value) n
 #endif
 }
 
-/// `dest` is a range of values, changed in place. Sizes of `indices` (integers, of any sign) and
-/// `values` agree.
+/// `dest` is changed in place. `indices` (integers of any sign) and `values` have the same size.
 template <class Exec, Writable Dest, Readable Indices, Readable Values, class Op>
 void reduce_by_index(Exec& exec, Dest&& dest, const Indices& indices, const Values& values, Op op) {
   using T = std::remove_cvref_t<decltype(dest[0])>;
@@ -123,7 +117,7 @@ void reduce_by_index(Exec& exec, Dest&& dest, const Indices& indices, const Valu
     return std::cmp_greater_equal(indices[i], 0) && std::cmp_less(indices[i], bins);
   };
   if constexpr (std::is_same_v<T, std::uint64_t> && std::is_same_v<Op, Maximum>) {
-    // Bins far apart are fetched ahead of time: 108 → 63 ms for 10 M words in 8 MiB, 2 threads.
+    // Prefetching distant bins helps: 108 → 63 ms for 10 M words in 8 MiB, 2 threads.
     constexpr std::size_t kAhead = 16;
     for_each_block(exec, n, [&](std::size_t, std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // reduce_by_key: one key and one reduced value for each run of equal neighbouring keys.
 //
-// The operator must be associative. Where that holds only up to rounding the result is still one:
-// a run is cut where blocks of kBlock elements begin, the pieces are folded from the left, and so
-// are their results, whatever the backend and the number of threads.
+// The operator must be associative. The result is as deterministic as reduce's: runs are cut at
+// blocks of kBlock elements, and the pieces and then their results are folded from the left.
 // Work O(n), span O(kBlock + n / kBlock). Allocates the result; threads one value per block more.
 // Source: paper 5, appendix A.
 #pragma once
@@ -28,7 +27,7 @@ struct ReducedByKey {
 
 namespace by_key_detail {
 
-// The passes in blocks, named and over views, so that they are a device's as well.
+// Passes over blocks: named functors over views, so that devices can run them.
 
 template <class Keys>
 [[nodiscard]] RASTRUM_HD bool is_head(const Keys& keys, std::size_t i) {
@@ -46,8 +45,8 @@ struct CountHeads {
   }
 };
 
-/// Writes the runs that begin in a block; `carried` is its first piece, where that continues a run
-/// of the block before it.
+/// Writes the runs that begin in a block. If its first elements continue a run, `carried` gets
+/// their reduction.
 template <class K, class V, class Keys, class Values, class Op>
 struct ReduceRuns {
   Keys keys;
@@ -78,7 +77,7 @@ struct ReduceRuns {
   }
 };
 
-/// Puts the pieces to their runs, in order. By one thread.
+/// Adds the carried pieces to their runs, in order. Runs on one thread.
 template <class V, class Op>
 struct AddCarried {
   std::span<const std::size_t> heads_before;
@@ -96,7 +95,7 @@ struct AddCarried {
   }
 };
 
-/// `Out` is what the backend's ReducedByKey is.
+/// `Out` is the backend's ReducedByKey.
 template <class Out, class K, class V, class Exec, class Keys, class Values, class Op>
 [[nodiscard]] Out reduce_in_blocks(Exec& exec, Keys keys, Values values, Op op) {
   const std::size_t n = std::size(keys);
@@ -120,7 +119,7 @@ template <class Out, class K, class V, class Exec, class Keys, class Values, cla
 
 }  // namespace by_key_detail
 
-/// Sizes of `keys` and `values` agree. Sort by key first where equal keys are to meet.
+/// `keys` and `values` have the same size. Sort by key first if equal keys are to meet.
 template <Readable Keys, Readable Values, class Op = std::plus<>>
 [[nodiscard]] ReducedByKey<element_t<Keys>, element_t<Values>> reduce_by_key(Serial& exec,
                                                                              const Keys& keys,

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // exclusive_scan: out[i] = in[0] op … op in[i − 1]; inclusive_scan: … op in[i].
 //
-// Associativity, and the one result where it holds only up to rounding, as in reduce: within a
-// block of kBlock elements the sums run from the block's first element, and the sum of all earlier
-// blocks is put before them.
-// Work O(n) (threads read the input twice), span O(kBlock + n / kBlock). Threads allocate one T per
-// block. Source: Blelloch, "Prefix sums and their applications", 1990; paper 5, appendix A.
+// The operator must be associative. The result is as deterministic as reduce's: within a block of
+// kBlock elements the sums run from its first element, and the sum of all earlier blocks comes
+// before them. Work O(n) (threads read the input twice), span O(kBlock + n / kBlock). Threads
+// allocate one T per block. Source: Blelloch, "Prefix sums and their applications", 1990; paper 5,
+// appendix A.
 #pragma once
 
 #include <cassert>
@@ -19,11 +19,11 @@
 namespace rastrum::parallel {
 namespace scan_detail {
 
-/// Writes one block, `carry` being the sum before it; returns the sum behind it.
+/// Writes one block, where `carry` is the sum of all before it; returns the sum including it.
 template <bool kInclusive, class In, class Out, class T, class Op>
 RASTRUM_HD T scan_block(const In& in, Out& out, std::size_t begin, std::size_t end, T carry,
                         Op& op) {
-  T local = static_cast<T>(in[begin]);  // read before the write: `out` may be `in`
+  T local = static_cast<T>(in[begin]);  // before the write: `out` may be `in`
   if constexpr (!kInclusive) out[begin] = carry;
   if constexpr (kInclusive) out[begin] = static_cast<T>(op(carry, local));
   for (std::size_t i = begin + 1; i < end; ++i) {
@@ -63,15 +63,15 @@ T scan(Threads& exec, const In& in, Out& out, T carry, Op& op) {
 
 }  // namespace scan_detail
 
-/// `initial` (as a rule the neutral element) is put before everything; returns the sum of all.
-/// Computes in the type of `initial`. `out` has the size of `in` and may be `in`.
+/// `initial`, usually the neutral element, comes first. Returns the sum of all. Computes in the
+/// type of `initial`. `out` has the size of `in` and may be `in`.
 template <class Exec, Readable In, Writable Out, class T, class Op = std::plus<>>
 T exclusive_scan(Exec& exec, const In& in, Out&& out, T initial, Op op = {}) {
   assert(std::size(in) == std::size(out));
   return scan_detail::scan<false>(exec, in, out, initial, op);
 }
 
-/// The same, each sum with its own element.
+/// The same, but each sum includes its own element.
 template <class Exec, Readable In, Writable Out, class T, class Op = std::plus<>>
 T inclusive_scan(Exec& exec, const In& in, Out&& out, T initial, Op op = {}) {
   assert(std::size(in) == std::size(out));

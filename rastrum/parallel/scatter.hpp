@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // scatter: out[map[i]] = in[i]; scatter_if only where stencil[i] is true.
 //
-// Futhark's scatter ignores indices outside of `out` (paper 1, section 2.2.3); here that is a bug
-// of the caller's, and what must not be written is said with a stencil (paper 5, appendix A). Work
-// O(n), span O(log n). Allocates nothing.
+// Futhark's scatter ignores indices outside of `out` (paper 1, section 2.2.3). Here they are a bug
+// of the caller; a stencil leaves elements out (paper 5, appendix A). Work O(n), span O(log n).
+// Allocates nothing.
 #pragma once
 
 #include <cassert>
@@ -14,9 +14,8 @@
 
 namespace rastrum::parallel {
 
-/// Requires: all map[i] whose stencil is true are < size(out) and differ from each other (two
-/// writers of one element are a race). The rest of `out` is left as it is. `out` must not overlap
-/// the inputs.
+/// Requires: the map[i] whose stencil is true are < size(out) and all different, since two writers
+/// of one element are a race. The rest of `out` is unchanged. `out` must not overlap the inputs.
 template <class Exec, Readable In, Readable Map, Readable Stencil, Writable Out>
 void scatter_if(Exec& exec, const In& in, const Map& map, const Stencil& stencil, Out&& out) {
   assert(std::size(in) == std::size(map) && std::size(in) == std::size(stencil));

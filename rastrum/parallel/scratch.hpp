@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// for_each_with_scratch: a loop whose body wants memory of its own to work in. The pool outlives
-// the loop, so that what grew in one frame is there in the next.
+// for_each_with_scratch: a loop whose bodies need scratch memory. Its pool outlives the loop, so
+// that frames reuse it.
 //
-// Work O(n), span O(log n) beside the bodies'. At most one T per thread that ever took part.
-// A worker thread with its T is here what a block of threads with shared memory is on a device
-// (for_each_team, cuda/exec.cuh).
+// Work O(n), span O(log n) beside the bodies'. At most one T per thread. A worker with its T
+// corresponds to a device's block of threads with shared memory (for_each_team, cuda/exec.cuh).
 #pragma once
 
 #include <cstddef>
@@ -25,7 +24,7 @@ class ThreadSlots {
   ThreadSlots& operator=(ThreadSlots&&) noexcept;
   ~ThreadSlots();
   [[nodiscard]] void*& local();
-  /// f(slot, data) for all that are not null; not while a loop runs.
+  /// Calls f(slot, data) for all that are not null; not while a loop runs.
   void for_each(void (*f)(void* slot, void* data), void* data);
 
  private:
@@ -33,13 +32,12 @@ class ThreadSlots {
   std::unique_ptr<Impl> impl_;
 };
 
-/// A T for each thread that asks, made when it first does and kept until the pool ends.
+/// A T for each thread that asks, made on first use and kept until the pool ends.
 template <class T>
 class ScratchPool {
  public:
-  /// Each T is T{}.
   ScratchPool() : ScratchPool([] { return T{}; }) {}
-  /// Each T is make(), which is copied and may be called by several threads at once.
+  /// Each T is make(), which several threads may call at once.
   template <class Make>
   requires(!std::is_same_v<Make, ScratchPool>) explicit ScratchPool(Make make)
       : make_([make] { return new T(make()); }) {}
@@ -53,15 +51,15 @@ class ScratchPool {
     slots_.for_each([](void* slot, void*) { delete static_cast<T*>(slot); }, nullptr);
   }
 
-  /// The calling thread's T. Keep no reference across a loop on the same backend: a thread that
-  /// waits for it may run another body of the outer loop, which has the same T.
+  /// The calling thread's T. Keep no reference across a loop on the same backend: a waiting thread
+  /// may run another body of the outer loop, with the same T.
   [[nodiscard]] T& local() {
     void*& slot = slots_.local();
     if (slot == nullptr) slot = make_();
     return *static_cast<T*>(slot);
   }
 
-  /// Calls f(T&) for all that were made, in no particular order; not while a loop runs.
+  /// Calls f(T&) for all that exist, in any order; not while a loop runs.
   template <class F>
   void for_each(F&& f) {
     slots_.for_each(
@@ -76,8 +74,8 @@ class ScratchPool {
   ThreadSlots slots_;
 };
 
-/// Calls f(i, scratch) for i in [0, n); no other body has `scratch` meanwhile. At first it holds
-/// what an earlier body left there. f must not start loops on `exec`.
+/// Calls f(i, scratch) for i in [0, n). Only this body uses `scratch`, which still holds what an
+/// earlier one left there. f must not start loops on `exec`.
 template <class Exec, class T, class F>
 void for_each_with_scratch(Exec& exec, std::size_t n, ScratchPool<T>& pool, F&& f) {
   for_each_index(exec, n, [&](std::size_t i) { f(i, pool.local()); });

@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // segmented_scan: a scan of each segment by itself.
 //
-// Segments are given by where they begin: segment s is [first[s], first[s + 1]), the last one ends
-// at n. Futhark's library takes flags instead, which cannot say that a segment is empty; and first
-// is what an expansion has (Expansion::first).
-// The operator must be associative. Where that holds only up to rounding the result is still one: a
-// segment is cut where blocks of kBlock elements begin, the pieces are folded from the left, and so
-// are their results, whatever the backend and the number of threads.
-// Work O(n + segments + n / kBlock · log segments), span O(kBlock + n / kBlock), however long one
-// segment is. Allocates one T per block.
-// Source: Futhark's segmented library (paper 1, section 2.2.2); Blelloch, 1990.
+// Segment s is [first[s], first[s + 1]); the last one ends at n. (Futhark's library takes flags,
+// which cannot express empty segments.) The operator must be associative. The result is as
+// deterministic as reduce's: segments are cut at blocks of kBlock elements, and the pieces and then
+// their results are folded from the left. Work O(n + segments + n / kBlock · log segments), span
+// O(kBlock + n / kBlock), however long a segment is. Allocates one T per block. Source: Futhark's
+// segmented library (paper 1, section 2.2.2); Blelloch, 1990.
 #pragma once
 
 #include <cassert>
@@ -25,11 +22,11 @@
 namespace rastrum::parallel {
 namespace segmented_detail {
 
-/// Calls f(segment, begin, end) for each segment's share of [begin, end) that is not empty.
+/// Calls f(segment, begin, end) for each segment's non-empty share of [begin, end).
 template <class First, class F>
 RASTRUM_HD void for_each_run(const First& first, std::size_t begin, std::size_t end, F&& f) {
   const std::size_t segments = std::size(first);
-  std::size_t low = 0, high = segments;  // the last segment that begins at or before `begin`
+  std::size_t low = 0, high = segments;  // find the last segment that begins at or before `begin`
   while (high - low > 1) {
     const std::size_t middle = low + (high - low) / 2;
     (static_cast<std::size_t>(first[middle]) <= begin ? low : high) = middle;
@@ -48,7 +45,7 @@ template <class First>
   return static_cast<std::size_t>(first[segment]) == i;
 }
 
-// The passes, named and over views, so that they are a device's as well.
+// Passes over blocks: named functors over views, so that devices can run them.
 
 /// Finds the sum of a block's last run, and whether that run begins within the block.
 template <class T, class First, class In, class Op>
@@ -68,7 +65,7 @@ struct SumLastRun {
   }
 };
 
-/// Makes last[b] the sum of the segment that runs into the block behind b. By one thread.
+/// Makes last[b] the sum of block b's last segment from its begin. Runs on one thread.
 template <class T, class Op>
 struct CarryAcrossBlocks {
   std::span<T> last;
@@ -117,9 +114,9 @@ void scan_in_blocks(Exec& exec, First first, In in, Out out, Op op) {
 
 }  // namespace segmented_detail
 
-/// out[i] = in[first[s]] op … op in[i], s being the segment of i. `out` has the size of `in` and
-/// may be `in`. Requires: `first` ascends, first[0] = 0 unless there is no segment and no element.
-/// Computes in T.
+/// out[i] = in[first[s]] op … op in[i], where s is the segment of i. Computes in T. `out` has the
+/// size of `in` and may be `in`. Requires: `first` ascends, and first[0] = 0 unless there are no
+/// segments and no elements.
 template <class T, class Exec, Readable First, Readable In, Writable Out, class Op = std::plus<>>
 void segmented_scan(Exec& exec, const First& first, const In& in, Out&& out, Op op = {}) {
   using namespace segmented_detail;

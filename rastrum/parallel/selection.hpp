@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which elements a predicate holds for, as bit masks, and where each block's share goes: the first
-// half of filter and partition with threads. The predicate runs once per element, and a bit is
-// kept instead of a flag or a second call (the idea of paper 1's expand_masked).
+// Bit masks of the elements for which a predicate holds, and where each block's share goes: the
+// first half of filter and partition with threads. A bit saves a second call of the predicate (the
+// idea of paper 1's expand_masked).
 #pragma once
 
 #include <cstddef>

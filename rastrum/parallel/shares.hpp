@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// for_each_share: what is found in one order, by each thread for the part that falls to it.
+// for_each_share: each thread looks at everything, in order, and works on its own share.
 //
-// Work O(threads · what all look at), span that of the looking and of the largest share. Better
-// than a sort where the looking is cheap, and where what is near in memory mostly belongs together.
+// Work O(threads · all elements), span that of looking at all plus the largest share. Better than a
+// sort if looking is cheap, and if neighbours in memory mostly belong to the same share.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace rastrum::parallel {
 
-/// Calls f(share, shares) for each share in [0, shares), of which there are as many as threads.
+/// Calls f(share, shares) for each share in [0, shares); there are as many shares as threads.
 template <class F>
 void for_each_share(Serial&, F&& f) {
   f(std::size_t{0}, std::size_t{1});
@@ -22,8 +22,8 @@ void for_each_share(Threads& exec, F&& f) {
   for_each_index(exec, shares, [&](std::size_t share) { f(share, shares); });
 }
 
-/// Returns f(exec). For many things, each of which takes some 100 ns, `exec` has threads of its
-/// own; a few things are done before threads have begun.
+/// Returns f(exec). `exec` has its own threads if there are many things, each of some 100 ns; for
+/// few it is serial, because starting threads takes longer.
 template <class F>
 decltype(auto) on_threads_of_its_own(std::size_t things, F&& f) {
   constexpr std::size_t kFew = std::size_t{1} << 15;

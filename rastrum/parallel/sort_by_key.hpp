@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// sort_by_key: sorts pairs by an unsigned integer key, stably, by radix sort: one pass on the
-// highest digit into buckets that fit a core's cache, then each bucket on the lower digits, lowest
+// sort_by_key: a stable radix sort of pairs by an unsigned integer key. One pass on the highest
+// digit makes buckets that fit a core's cache; each is then sorted on its lower digits, lowest
 // first.
 //
-// Bits that are the same in all keys are left out; they are found while the highest digit is
-// counted, which is counted again where it turns out to be another. A bucket that does not fit
-// (most keys have one highest digit) is passed by all threads together, like the whole. Pairs go
-// back and forth between the caller's two arrays and one of pairs, so their number of passes is
-// even. Writes to many places at once are collected by cache lines. A stable sort has one result,
-// so the cut may depend on the number of threads.
+// Bits equal in all keys are left out; they are found while a guess of the highest digit is
+// counted. All threads together sort a bucket that does not fit (most keys share one digit). Pairs
+// alternate between the caller's arrays and an array of pairs, so the number of passes is even.
+// Writes to many places are collected by cache lines. The cut may depend on the number of threads,
+// because a stable sort has only one result.
 //
-// Work O(n · bits / 11), span O(n / threads + 2048 · threads + kLargeBucket). Allocates n pairs,
-// packed.
-// Sources: Zagha and Blelloch, "Radix sort for vector multiprocessors", 1991; the lines: Satish et
-// al., "Fast sort on CPUs and GPUs", 2010. Paper 5, appendix A, takes a comparator instead, which
-// the painting of pixels never needs.
+// Work O(n · bits / 11), span O(n / threads + 2048 · threads + kLargeBucket). Allocates n packed
+// pairs. Sources: Zagha and Blelloch, "Radix sort for vector multiprocessors", 1991; for the lines,
+// Satish et al., "Fast sort on CPUs and GPUs", 2010. Paper 5, appendix A, takes a comparator
+// instead, which painting pixels never needs.
 #pragma once
 
 #include <algorithm>
@@ -38,19 +36,18 @@
 namespace rastrum::parallel {
 namespace sort_detail {
 
-/// More places to write to at once than this fall out of the second-level cache.
+/// Writing to more places at once exceeds the second-level cache.
 inline constexpr int kMostFirstBits = 10, kMostDigitBits = 11;
-/// Pairs of a bucket that the first digit is chosen for, and that one thread is given at most.
+/// The target size of a bucket, in pairs, and the most that one thread sorts.
 inline constexpr std::size_t kBucket = 4096, kLargeBucket = std::size_t{1} << 17;
-/// Pairs of a line: those of 4-byte keys and values fill a cache line.
+/// With 4-byte keys and values the pairs of a line fill a cache line.
 inline constexpr std::size_t kLine = 8;
-/// Pairs whose places are fetched at once: 4-byte keys of so many fill a cache line.
+/// 4-byte keys of so many prefetched pairs fill a cache line.
 inline constexpr std::uint32_t kFetched = 16;
-/// Fewer pairs than this a chunk are not worth a task and its counters.
+/// Chunks with fewer pairs are not worth a task and its counters.
 inline constexpr std::size_t kSmallestChunk = 16384;
 
 #pragma pack(push, 1)
-/// A key and its value without padding.
 template <class K, class V>
 struct Pair {
   static_assert(std::is_trivially_copyable_v<V>);
@@ -59,7 +56,7 @@ struct Pair {
 };
 #pragma pack(pop)
 
-/// The two places where pairs lie: the caller's arrays, and an array of pairs.
+/// The two layouts of pairs.
 template <class K, class V>
 struct Columns {
   K* keys;
@@ -87,7 +84,7 @@ struct Rows {
   void put(std::size_t i, const Pair<K, V>& pair) const { pairs[i] = pair; }
   void put_line(std::size_t i, const Pair<K, V>* line, std::size_t n) const {
     if (n == kLine)
-      std::copy_n(line, kLine, pairs + i);  // mostly
+      std::copy_n(line, kLine, pairs + i);  // the common case, with a constant size
     else
       std::copy_n(line, n, pairs + i);
   }
@@ -99,7 +96,7 @@ struct Rows {
 struct Digit {
   int shift = 0, width = 0;
   Digit() = default;
-  /// Without any bit it may begin behind the last one, where no shift reaches.
+  /// A digit without bits may begin behind the key's last bit, which is too far to shift.
   Digit(int first, int bits) : shift(bits == 0 ? 0 : first), width(bits) {}
   bool operator==(const Digit&) const = default;
   [[nodiscard]] std::size_t count() const { return std::size_t{1} << width; }
@@ -109,7 +106,7 @@ struct Digit {
   }
 };
 
-/// Makes counts[d] the place of the first pair of digit d, in order; returns the number of all.
+/// Makes counts[d] the place of the first pair of digit d; returns the sum of the counts.
 template <class Count>
 Count places(Count* counts, std::size_t stride, std::size_t n, Count next = 0) {
   for (std::size_t i = 0; i < n; ++i) next += std::exchange(counts[i * stride], next);
@@ -118,15 +115,15 @@ Count places(Count* counts, std::size_t stride, std::size_t n, Count next = 0) {
 
 inline constexpr std::size_t kMostCounters = std::size_t{1} << kMostDigitBits;
 
-/// Moves n pairs to the places that `counts` of the digit says.
+/// Moves n pairs to their places; `counts` says how many have each digit.
 template <class From, class To>
 void move_pairs(From from, To to, std::uint32_t n, Digit digit, std::uint32_t* counts) {
   places(counts, 1, digit.count());
   for (std::uint32_t i = 0; i < n; ++i) to.put(counts[digit.of(from.key(i))]++, from.get(i));
 }
 
-/// One stable pass on `digit` for what fits a cache: count, then move. Meanwhile the lines of `to`
-/// are fetched: stores to lines that no cache holds wait for each other.
+/// One stable pass on `digit` for pairs that fit a cache: count, then move. Meanwhile the lines of
+/// `to` are prefetched, because stores to uncached lines wait for each other.
 template <class From, class To>
 void pass(From from, To to, std::uint32_t n, Digit digit) {
   std::array<std::uint32_t, kMostCounters> counts;
@@ -139,10 +136,10 @@ void pass(From from, To to, std::uint32_t n, Digit digit) {
   move_pairs(from, to, n, digit, counts.data());
 }
 
-/// The same on two digits, by way of `middle`; both are counted at once.
+/// The same on two digits, via `middle`; both are counted at once.
 template <class From, class Middle, class To>
 void two_passes(From from, Middle middle, To to, std::uint32_t n, Digit first, Digit second) {
-  // One behind the other: at a distance of 4096 bytes loads would wait for stores to the other.
+  // Adjacent: at a distance of 4096 bytes, loads from one would wait for stores to the other.
   std::array<std::uint32_t, 2 * kMostCounters> counts;
   std::uint32_t* const second_counts = counts.data() + first.count();
   std::fill_n(counts.begin(), first.count() + second.count(), 0U);
@@ -158,8 +155,8 @@ void two_passes(From from, Middle middle, To to, std::uint32_t n, Digit first, D
   move_pairs(middle, to, n, second, second_counts);
 }
 
-/// Moves pairs [begin, end) to next[digit], which it counts up, by lines of kLine pairs: a line is
-/// written when it is full. `first` and `lines` are room for a number and a line per digit.
+/// Moves pairs [begin, end) to next[digit], which advances, by full lines of kLine pairs. `first`
+/// and `lines` have room for a number and a line per digit.
 template <class From, class To, class P>
 void move_lines(From from, To to, std::size_t begin, std::size_t end, Digit digit,
                 std::size_t* next, std::size_t* first, P* lines) {
@@ -185,7 +182,7 @@ void move_lines(From from, To to, std::size_t begin, std::size_t end, Digit digi
                                  static_cast<std::size_t>(exec.concurrency()));
 }
 
-/// Calls f(chunk, begin, end) for `chunks` equal ranges that make up [0, n).
+/// Calls f(chunk, begin, end) for `chunks` ranges that make up [0, n), equal but for the last.
 template <class Exec, class F>
 void for_each_chunk(Exec& exec, std::size_t n, std::size_t chunks, F&& f) {
   for_each_index(exec, chunks, [&](std::size_t c) {
@@ -193,8 +190,8 @@ void for_each_chunk(Exec& exec, std::size_t n, std::size_t chunks, F&& f) {
   });
 }
 
-/// How often each chunk of [0, n) has each value of `digit`, chunk by chunk; the bits in which keys
-/// differ from the first one on the way.
+/// How often each chunk of [0, n) has each value of `digit`. `differing` becomes the bits in which
+/// keys differ.
 template <class Exec, class From, class K>
 Buffer<std::size_t> count_digits(Exec& exec, From from, std::size_t n, Digit digit, K& differing) {
   const std::size_t chunks = chunks_for(exec, n), digits = digit.count();
@@ -216,8 +213,8 @@ Buffer<std::size_t> count_digits(Exec& exec, From from, std::size_t n, Digit dig
   return counts;
 }
 
-/// One stable pass by all threads from what count_digits says: a scan over (digit, chunk) gives
-/// every chunk its places. Returns where each digit begins, and n behind them.
+/// One stable pass by all threads: a scan of count_digits' result over (digit, chunk) finds each
+/// chunk's places. Returns where each digit begins, and n.
 template <class Exec, class From, class To>
 Buffer<std::size_t> move_together(Exec& exec, From from, To to, std::size_t n, Digit digit,
                                   Buffer<std::size_t> next) {
@@ -239,7 +236,6 @@ Buffer<std::size_t> move_together(Exec& exec, From from, To to, std::size_t n, D
   return first;
 }
 
-/// One stable pass by all threads.
 template <class Exec, class From, class To>
 void pass_together(Exec& exec, From from, To to, std::size_t n, Digit digit) {
   decltype(from.key(0)) differing;
@@ -247,11 +243,11 @@ void pass_together(Exec& exec, From from, To to, std::size_t n, Digit digit) {
   move_together(exec, from, to, n, digit, std::move(counts));
 }
 
-/// How to sort by bits [low, high): by `count` digits, lowest first.
+/// The cut of bits [low, high) into `count` digits, lowest first.
 struct Digits {
   int low, high, width, count;
   Digits(int low_bit, int high_bit, std::size_t n) : low(low_bit), high(high_bit) {
-    // Fewer pairs are not worth as many counters.
+    // With few pairs large digits are not worth their counters.
     const int most = std::clamp(static_cast<int>(std::bit_width(n)), 6, kMostDigitBits);
     count = std::max(1, (high - low + most - 1) / most);
     width = (high - low + count - 1) / count;
@@ -262,8 +258,7 @@ struct Digits {
   }
 };
 
-/// Sorts the n pairs of `rows` into `columns`, going back and forth; where that ends in the wrong
-/// place, by way of `room`.
+/// Sorts the n pairs of `rows` into `columns`; an even number of passes also uses `room`.
 template <class Rows, class Columns>
 void sort_bucket(Rows rows, Columns columns, Rows room, std::uint32_t n, const Digits& digits) {
   const int last = digits.count - 1;
@@ -287,8 +282,8 @@ void sort_bucket_together(Exec& exec, Rows rows, Columns columns, std::size_t n,
 
 }  // namespace sort_detail
 
-/// Sorts `keys` and, along with them, `values` (contiguous ranges of one size) by the low `bits`
-/// bits of the keys; higher bits are carried along. Pairs of equal keys keep their order.
+/// Sorts `keys`, and `values` along with them (contiguous ranges of one size), by the low `bits`
+/// bits of the keys. Stable.
 template <class Exec, class Keys, class Values>
 void sort_by_key(Exec& exec, Keys&& key_range, Values&& value_range, int bits = -1) {
   using namespace sort_detail;
@@ -308,7 +303,7 @@ void sort_by_key(Exec& exec, Keys&& key_range, Values&& value_range, int bits = 
   const auto first_width = [n](int at_most) {
     return std::min({static_cast<int>(std::bit_width(n / kBucket)), kMostFirstBits, at_most});
   };
-  // Counted before it is known which bits differ: mostly the highest one does.
+  // A guess, because the count also finds the differing bits: mostly the highest one differs.
   const Digit guess{bits - first_width(bits), first_width(bits)};
   K differing;
   auto counts = count_digits(exec, columns, n, guess, differing);

@@ -12,7 +12,7 @@
 
 namespace rastrum::parallel {
 
-/// f is called once for each index of `out`, in any order.
+/// Calls f once for each index of `out`, in any order.
 template <Writable Out, class F>
 void tabulate(Serial&, Out&& out, F&& f) {
   const std::size_t n = std::size(out);

@@ -12,7 +12,7 @@
 
 namespace rastrum::parallel {
 
-/// `out` has the size of `in` and may be `in`. f is called once per element, in any order.
+/// `out` has the size of `in` and may be `in`. Calls f once per element, in any order.
 template <class Exec, Readable In, Writable Out, class F>
 void transform(Exec& exec, const In& in, Out&& out, F&& f) {
   assert(std::size(in) == std::size(out));

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // transpose: out[x · rows + y] = in[y · columns + x].
 //
-// Work O(n), span O(kTransposeTile² + log n): tiles that are read by rows and written by columns
-// within a cache, else each element written costs a cache line. Allocates nothing.
-// Source: Futhark's transpose.
+// Work O(n), span O(kTransposeTile² + log n). Tiles stay in the cache; otherwise each element
+// written would cost a cache line. Allocates nothing. Source: Futhark's transpose.
 #pragma once
 
 #include <algorithm>

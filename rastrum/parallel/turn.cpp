@@ -8,7 +8,7 @@
 namespace rastrum::parallel {
 namespace {
 
-/// Guards the list of turns and their exceptions. It is never held for long.
+/// Guards the list of turns and their exceptions. Held only briefly.
 std::mutex turns_guard;
 CallingTurn* newest_turn = nullptr;
 
@@ -16,7 +16,7 @@ CallingTurn* newest_turn = nullptr;
 
 CallingTurn::CallingTurn(std::mutex& one_at_a_time, StopToken stop)
     : lock_(not_within(one_at_a_time)), mutex_(one_at_a_time), outer_(current()) {
-  // Without `stop` the token of the scope around it holds.
+  // Without a `stop` the surrounding scope's token applies.
   if (stop.stop_possible())
     stop_.asked = stop;
   else if (before_ != nullptr)

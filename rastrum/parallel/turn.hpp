@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Objects that work for one caller at a time, but may be called by several threads at once: the
-// renderers, whose threads and scratch are for one frame.
+// Turns at objects such as renderers: several threads may call them, but they work for one caller
+// at a time, because their threads and scratch serve one frame.
 #pragma once
 
 #include <atomic>
@@ -13,7 +13,7 @@
 
 namespace rastrum::parallel {
 
-/// A turn whose work calls functions of the caller's from code that must not throw. The first
+/// A turn whose work calls the caller's functions from code that must not throw. Their first
 /// exception stops the work.
 class CallingTurn {
  public:
@@ -23,7 +23,7 @@ class CallingTurn {
   CallingTurn(const CallingTurn&) = delete;
   CallingTurn& operator=(const CallingTurn&) = delete;
 
-  /// Returns work(); throws the first exception of a function that it gave to call().
+  /// Returns work(); throws the first exception of a function given to call().
   template <class Work>
   auto run(const Work& work) {
     try {
@@ -35,8 +35,8 @@ class CallingTurn {
       throw;
     }
   }
-  /// Calls a function of the caller's; any thread of the turn's work may do so. Returns false if it
-  /// throws. Ends the process if it throws outside of a turn.
+  /// Calls a caller's function, on any thread of the turn's work. Returns false if it throws.
+  /// Outside of a turn an exception ends the process.
   template <class Function>
   static bool call(const Function& function) noexcept {
     try {
@@ -48,11 +48,11 @@ class CallingTurn {
     }
   }
 
-  /// Returns `turn`; throws if the calling thread works for it already.
+  /// Returns `turn`; throws if the calling thread already works for it.
   static std::mutex& not_within(std::mutex& turn);
 
  private:
-  /// Asks to stop where a function has thrown, and where `asked` does.
+  /// Requests a stop if a function has thrown or if `asked` does.
   struct Stop {
     StopToken asked;
     std::atomic<bool> thrown = false;
@@ -76,10 +76,10 @@ class CallingTurn {
   FloatScope floats_;
 };
 
-/// Returns work() in the calling thread's turn, for which it waits, with `stop` in force and the
-/// library's floating-point mode set. Throws Stopped if a stop has been requested by then,
-/// Error{out_of_memory} as in_memory, and Error{invalid_argument} if the caller is a function that
-/// a CallingTurn of the same object calls, because it would wait for itself.
+/// Waits for a turn, then returns work() with `stop` in force and the library's floating-point mode
+/// set. Throws Stopped if a stop is already requested, and Error{out_of_memory} as in_memory does.
+/// Throws Error{invalid_argument} if a CallingTurn of the same object calls the caller, which would
+/// wait for itself.
 template <class Work>
 auto in_turn(std::mutex& one_at_a_time, StopToken stop, const Work& work) {
   const std::lock_guard<std::mutex> lock(CallingTurn::not_within(one_at_a_time));

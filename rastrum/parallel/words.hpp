@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All the data-parallel words. A word is a function template whose first argument is the backend;
-// inputs and outputs are ranges (range.hpp) of the caller's, and a Buffer is returned only where
-// its size depends on the data. Functors are called concurrently and must not share mutable state.
+// All data-parallel words (exec.hpp). Inputs and outputs are the caller's ranges (range.hpp); a
+// Buffer is returned only if its size depends on the data. Functors are called concurrently and
+// must not share mutable state.
 #pragma once
 
 #include <rastrum/parallel/arena.hpp>

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A work queue that grows: many producers, many consumers, and no capacity that could be exceeded.
-// Items come out in chunks, so that a lock is paid per chunk; in which order is not specified.
+// A work queue that grows: many producers, many consumers, no fixed capacity. Items come out in
+// chunks, so that a lock is paid per chunk. The order is unspecified.
 //
-// O(1) amortized per item. Memory: the items and what consumers' chunks had grown to.
-// Source: the bin queues of paper 2, section on large triangles, where they are arrays with a fixed
-// size that may overflow. oneTBB's concurrent_queue is larger (over a kilobyte when empty, and a
-// frame wants one per bin), and hands out single items.
+// O(1) amortized per item. Source: the bin queues of paper 2, section on large triangles, whose
+// fixed size may overflow. oneTBB's concurrent_queue is larger (over a kilobyte when empty; a frame
+// wants one per bin) and hands out single items.
 #pragma once
 
 #include <algorithm>
@@ -23,8 +22,8 @@ namespace rastrum::parallel {
 template <class T>
 class WorkQueue {
  public:
-  /// Chunks have at most `per_chunk` > 0 items; smaller ones only where there are no more.
-  /// Items lie in `memory`, or on the heap where there is none.
+  /// Chunks have at most `per_chunk` > 0 items, and fewer only if there are no more. Items lie in
+  /// `memory`, or on the heap without one.
   explicit WorkQueue(std::size_t per_chunk = 32, std::shared_ptr<Arena> memory = nullptr)
       : items_(ArenaAllocator<T>(std::move(memory))), per_chunk_(per_chunk) {}
 
@@ -34,7 +33,7 @@ class WorkQueue {
   }
   void push(const T& item) { push(std::span(&item, 1)); }
 
-  /// Replaces `chunk` by items that nobody else gets; false where there are none at the moment.
+  /// Replaces `chunk` by items that nobody else gets; false if there are none now.
   [[nodiscard]] bool try_pop(std::vector<T>& chunk) {
     const std::lock_guard lock(mutex_);
     chunk.clear();

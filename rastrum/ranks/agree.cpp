@@ -14,9 +14,9 @@
 namespace rastrum::ranks {
 namespace {
 
-constexpr std::int32_t kNoError = -1;  ///< an exception that is none
+constexpr std::int32_t kNoError = -1;  ///< an exception that is not an Error
 
-/// The failing rank's message to all others; its size is fixed.
+/// The failing rank's message to all others, of fixed size.
 struct Verdict {
   std::int32_t code = kNoError;  ///< Errc
   std::array<char, 1020> text{};
@@ -50,7 +50,7 @@ void agree(Communicator& ranks, const std::exception_ptr& failure,
            std::span<std::uint64_t> numbers) {
   const auto size = static_cast<std::uint64_t>(ranks.size());
   const auto rank = static_cast<std::uint64_t>(ranks.rank());
-  // The lowest failing rank has the greatest number; 0 is nobody.
+  // The lowest failing rank has the greatest number; 0 means no failure.
   std::array<std::uint64_t, 1 + kMostNumbers> told{failure ? size - rank : 0};
   std::ranges::copy(numbers, told.begin() + 1);
   ranks.max_of_each(std::span(told).first(1 + numbers.size()));

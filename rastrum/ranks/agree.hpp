@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How a phase of a frame ends: either on all ranks without an error, or on all with the same one.
-// Between a throw and its agreement no collective stands, so nobody waits for who has thrown.
+// A phase of a frame ends on all ranks without an error, or on all with the same one. There is no
+// collective call between a throw and its agreement, so nobody waits for the rank that has thrown.
 #pragma once
 
 #include <cstddef>
@@ -15,21 +15,21 @@
 
 namespace rastrum::ranks {
 
-/// Called at the beginning of each phase's local work; what it throws counts as that work's own
-/// error. For tests: none in a frame of users.
+/// For tests: called at the beginning of each phase's local work. An exception of it counts as that
+/// work's own.
 using AtPhase = std::function<void(std::string_view phase, int rank)>;
 
-/// Numbers that ranks agree on together with how a phase ended: the greatest of each.
+/// The most numbers that ranks agree on together with a phase's end.
 inline constexpr std::size_t kMostNumbers = 7;
 
-/// `failure`: this rank's, or null. Throws on all ranks what the lowest failing rank has, with
-/// "rank R: " before it; else `numbers`, of which there are kMostNumbers at most, are the greatest
+/// `failure`: this rank's, or null. If any rank failed, all throw the failure of the lowest such
+/// rank, after "rank R: ". Otherwise each of `numbers` (at most kMostNumbers) becomes the greatest
 /// of all ranks. Allocates nothing before all ranks know.
 void agree(Communicator& ranks, const std::exception_ptr& failure,
            std::span<std::uint64_t> numbers = {});
 
-/// A phase's local work, f(), whose agreement comes later: with the next phase's, before which
-/// there is no collective. Nothing is done where `failure` is there already.
+/// Runs f(), a phase's local work; the next phase agrees on its failure. There is no collective
+/// call in between. Does nothing if `failure` is already set.
 template <class F>
 void locally(Communicator& ranks, const AtPhase& at, std::string_view name, const F& f,
              std::exception_ptr& failure) {
@@ -44,7 +44,7 @@ void locally(Communicator& ranks, const AtPhase& at, std::string_view name, cons
   }
 }
 
-/// The local work of a phase, f(), and its agreement.
+/// Runs f(), a phase's local work, and agrees on its failure.
 template <class F>
 void in_phase(Communicator& ranks, const AtPhase& at, std::string_view name, const F& f) {
   std::exception_ptr failure;

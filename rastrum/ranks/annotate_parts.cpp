@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Annotations over a picture of ranks: the root draws them over its finished picture, by what ranks
-// have agreed on of the whole scene.
+// Annotations over a picture of ranks. The root draws them over its finished picture, from what
+// ranks agree on about the whole scene.
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -26,14 +26,14 @@ void check_alike(const Annotations& a, const SceneView& scene, const Targets& ta
     reject("Annotations::bar: is of things with scalars; the root has none");
 }
 
-/// As Annotator has it of a scene.
+/// As Annotator computes it for a scene.
 double occlusion_radius(Communicator& ranks, const SceneView& scene) {
   FitOfRanks fit(ranks);
   return 0.15 * bounding_sphere(scene, &fit).radius;
 }
 
-/// A scene in the place of the whole one. It has all that the root's drawing reads: the box, as two
-/// points, and the mappings.
+/// Stands for the whole scene, with what the root's drawing reads: the box, as two points, and the
+/// mappings.
 struct StandIn {
   StandIn(const Bounds& box, std::span<const ScalarMapping> mappings)
       : positions{box.min, box.max} {
@@ -61,10 +61,11 @@ RanksStats render_parts(Communicator& communicator, Renderer& renderer, Annotato
   Annotations a = annotations;
   FrameOptions drawn;
   Targets all;
-  // Where textures blend, effects look at a surface that has holes (Annotator::add_surface).
+  // Where textures blend, effects need another picture, of a surface with holes
+  // (Annotator::add_surface).
   const bool has_surface =
       frame.transparency.method != Transparency::none && (a.occlusion || a.dome || a.silhouettes);
-  // Progress is of both pictures, and annotations count as one more.
+  // Progress covers both pictures; annotations count as one more.
   const std::uint64_t steps = has_surface ? 3 : 2;
   RanksOptions first = options, second = options;
   do_alike(communicator, "check annotations", [&] {
@@ -85,7 +86,7 @@ RanksStats render_parts(Communicator& communicator, Renderer& renderer, Annotato
     all = targets;
     annotator.add_targets(a, frame.width, frame.height, all);
   });
-  // The collective calls below depend on these, so all ranks must have the same.
+  // The collective calls below depend on these, so they must be the same on all ranks.
   const bool asks[] = {a.occlusion.has_value(), a.occlusion && a.occlusion->radius == 0,
                        a.dome.has_value(),      a.silhouettes.has_value(),
                        a.edges.has_value(),     a.bounds,

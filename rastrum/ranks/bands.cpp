@@ -14,7 +14,7 @@ using raster::Rect;
 std::vector<Rect> bands_of(int width, int height, std::span<const BinFragments> bins,
                            std::size_t ranks, std::uint64_t bytes) {
   const int columns = (width + kBinSize - 1) / kBinSize, rows = (height + kBinSize - 1) / kBinSize;
-  // A rank's own lie by block and then packed; of all it gets its share.
+  // A rank holds its own fragments twice, by block and packed, and its share of all.
   const auto bytes_of = [&](const BinFragments& b) {
     return (2 * b.most + (b.all + ranks - 1) / ranks) * kFragmentBytes;
   };
@@ -23,7 +23,7 @@ std::vector<Rect> bands_of(int width, int height, std::span<const BinFragments> 
                 std::min(y1 * kBinSize, height)};
   };
   std::vector<Rect> bands;
-  int first = 0;  // of the rows that are not in a band yet
+  int first = 0;  // of the rows that are not yet in a band
   std::uint64_t held = 0;
   const auto end_band = [&](int row) {
     if (held > 0) bands.push_back(rect_of(0, first, columns, row));

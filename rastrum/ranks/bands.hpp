@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bands of a picture whose layers are exchanged one after the other, so that what ranks hold of
-// fragments at once is bounded.
+// Bands of a picture. Their layers are exchanged one after the other, which bounds the fragments
+// that a rank holds at once.
 #pragma once
 
 #include <cstdint>
@@ -17,9 +17,9 @@ struct BinFragments {
   std::uint64_t most = 0;  ///< of the rank that has most
 };
 
-/// Rectangles, cut at bins, that cover all bins with fragments: rows of bins, as many as fit, or
-/// parts of a row. In each no rank holds more than `bytes`, of its own and of those that it blends
-/// together, unless one bin alone needs that. `bins`: by row, of the whole picture.
+/// Rectangles of whole bins that cover all bins with fragments: as many rows as fit, or parts of a
+/// row. In each, a rank's own fragments and those that it blends take at most `bytes`, unless one
+/// bin needs more. `bins`: of the whole picture, by row.
 [[nodiscard]] std::vector<raster::Rect> bands_of(int width, int height,
                                                  std::span<const BinFragments> bins,
                                                  std::size_t ranks, std::uint64_t bytes);

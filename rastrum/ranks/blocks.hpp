@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How pixels are distributed and named: the picture is cut into blocks of 8 × 8 pixels, numbered
-// row by row. Each rank owns a run of them, and runs are about equally long. A set of pixels is a
-// list of blocks with a mask each.
+// The picture is cut into blocks of 8 × 8 pixels, numbered row by row. Each rank owns a run of
+// them; runs are about equally long. A set of pixels is a list of blocks with a mask each.
 #pragma once
 
 #include <algorithm>
@@ -26,33 +25,32 @@ struct BlockMask {
   std::uint64_t mask = 0;  ///< bit 8 y + x
   std::uint32_t block = 0;
 };
-/// Size of a BlockMask sent between ranks: no padding.
+/// Size of a BlockMask in a message: no padding.
 inline constexpr std::size_t kMaskBytes = 12;
 
 class BlockGrid {
  public:
   BlockGrid(int width, int height, int ranks) : BlockGrid(width, 0, height, ranks) {}
-  /// Covers the rows [top, bottom) of a picture that may have more; `top` is a multiple of kSide.
-  /// Blocks count from `top`, pixels from the picture's corner.
+  /// Covers the rows [top, bottom) of a picture; `top` is a multiple of kSide. Blocks count from
+  /// `top`, pixels from the picture's corner.
   BlockGrid(int width, int top, int bottom, int ranks);
   [[nodiscard]] std::size_t count() const { return count_; }
   /// Rank r owns blocks [firsts()[r], firsts()[r + 1]).
   [[nodiscard]] std::span<const std::uint64_t> firsts() const { return firsts_; }
   [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] int top() const { return top_; }
-  /// The block in column `bx` and row `by`, both counted from the picture's upper left corner.
+  /// The block in column `bx` and row `by` of the picture.
   [[nodiscard]] std::size_t at(int bx, int by) const {
     return static_cast<std::size_t>(by - top_ / kSide) * static_cast<std::size_t>(columns_) +
            static_cast<std::size_t>(bx);
   }
-  /// The picture's pixel in a block's upper left corner.
+  /// The picture's coordinates of a block's upper left pixel.
   [[nodiscard]] int x_of(std::uint32_t block) const {
     return static_cast<int>(block) % columns_ * kSide;
   }
   [[nodiscard]] int y_of(std::uint32_t block) const {
     return top_ + static_cast<int>(block) / columns_ * kSide;
   }
-  /// The rank that owns the words of a block.
   [[nodiscard]] std::size_t owner(std::uint32_t block) const;
   /// The pixels of a block that lie in the picture.
   [[nodiscard]] std::uint64_t inside(std::uint32_t block) const {
@@ -61,8 +59,7 @@ class BlockGrid {
     for (int y = 0; y < std::min(down, kSide); ++y) mask |= row << (kSide * y);
     return mask;
   }
-  /// Calls f(i, x, y) for the pixels of the block that are in its mask and in the picture, rising
-  /// i.
+  /// Calls f(i, x, y) for the pixels in both mask and picture, in rising order of i.
   template <class F>
   void each_pixel(BlockMask b, const F& f) const {
     const int x0 = x_of(b.block), y0 = y_of(b.block);
@@ -79,8 +76,7 @@ class BlockGrid {
   std::vector<std::uint64_t> firsts_;
 };
 
-/// Allocator for a vector whose new elements are left uninitialized: all are written afterwards, or
-/// received from other ranks.
+/// Leaves new elements of a vector uninitialized, because all are overwritten.
 template <class T>
 struct Unset : std::allocator<T> {
   template <class U>
@@ -108,7 +104,6 @@ inline void put_mask(Bytes& to, BlockMask b) {
   put(to, b.block);
 }
 
-/// A mask and the words of its pixels, taken from the block's 64.
 inline void put_words(Bytes& to, BlockMask b, const std::uint64_t* words) {
   put_mask(to, b);
   const std::size_t at = to.size();
@@ -118,7 +113,7 @@ inline void put_words(Bytes& to, BlockMask b, const std::uint64_t* words) {
     std::memcpy(out, words + std::countr_zero(m), sizeof(*words));
 }
 
-/// Reads what put wrote, in the same order.
+/// Reads in the order in which put wrote.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : left_(bytes) {}
@@ -153,16 +148,15 @@ class Mail {
   explicit Mail(int ranks);
   [[nodiscard]] Bytes& to(std::size_t rank) { return to_[rank]; }
   [[nodiscard]] std::size_t ranks() const { return to_.size(); }
-  /// A collective of its own that allocates nothing.
+  /// A collective call; allocates nothing.
   void exchange_sizes(Communicator& ranks);
-  /// Makes room for what will come.
   void make_room();
-  /// The collective; allocates nothing.
+  /// A collective call; allocates nothing.
   void exchange(Communicator& ranks);
-  /// For exchanges where all know who sends to whom: the next exchange() sends sizes, among these
-  /// ranks. Allocates nothing.
+  /// For exchanges in which all ranks know who sends to whom: the next exchange() sends sizes among
+  /// these ranks. Allocates nothing.
   void begin_sizes(std::span<const std::size_t> to, std::span<const std::size_t> from);
-  /// Afterwards: makes room, as make_room does, for the data from these ranks.
+  /// After that exchange(): makes room for the data from these ranks.
   void take_sizes(std::span<const std::size_t> from);
   [[nodiscard]] Reader from(std::size_t rank) const { return Reader(from_[rank]); }
   void clear_from() {

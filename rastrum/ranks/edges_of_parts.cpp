@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Edges over a picture of ranks. The lines in a pixel depend on nothing but the triangle that it
-// sees (docs/overlay.md). So the rank that has won the pixel finds the darkening, and sends the
-// root one number for each pixel that a line darkens.
+// Edges over a picture of ranks. The lines in a pixel depend only on the triangle seen there
+// (docs/overlay.md). So the rank that has won the pixel computes the darkening factor, and sends it
+// to the root for each darkened pixel.
 #include <algorithm>
 #include <array>
 

@@ -12,17 +12,17 @@
 namespace rastrum::ranks {
 namespace {
 
-/// A plane's header is its mask and a number that holds the sample and this bit.
+/// A plane's header is its mask and a number with the sample and this bit.
 constexpr std::uint32_t kOpaque = 1U << 31;
 constexpr std::size_t kPlaneBytes = sizeof(std::uint64_t) + sizeof(std::uint32_t);
-/// A block's header in mail, before its planes: its number and their size in bytes.
+/// A block's header in mail: its number and the size of its planes in bytes.
 constexpr std::size_t kBlockBytes = sizeof(std::uint32_t) + sizeof(std::uint64_t);
 
 std::size_t count_of(std::uint64_t mask) {
   return static_cast<std::size_t>(parallel::popcount(mask));
 }
 
-/// Begins a plane; returns where its words begin.
+/// Writes a plane's header; returns where its words begin.
 std::byte* put_plane(std::byte* at, std::uint64_t mask, int sample, bool opaque) {
   const std::uint32_t kind = static_cast<std::uint32_t>(sample) | (opaque ? kOpaque : 0);
   std::memcpy(at, &mask, sizeof(mask));
@@ -30,12 +30,12 @@ std::byte* put_plane(std::byte* at, std::uint64_t mask, int sample, bool opaque)
   return at + kPlaneBytes;
 }
 
-/// Writes the fragments of a plane that are not behind `hides` to `to`, which is the plane's own
-/// place or before it. Returns how many it has written.
+/// Writes a plane's fragments that are not behind `hides` to `to`, which is at or before the plane.
+/// Returns their number.
 std::size_t put_seen_of(const PackedPlane& plane, const std::uint64_t* hides, std::byte* to) {
-  std::uint64_t mask = 0, kept = 0;  // of the block's pixels, of the plane's fragments
+  std::uint64_t mask = 0, kept = 0;  // of the block's pixels, and of the plane's fragments
   std::size_t k = 0;
-  // Equal words are of the same part; the rank that drew it has already dropped what it hides.
+  // Equal words belong to the same part; the rank that drew it has already dropped what it hides.
   for (std::uint64_t m = plane.mask; m != 0; m &= m - 1, ++k) {
     const int i = std::countr_zero(m);
     const std::uint64_t seen{plane.word(k) >= hides[i]};
@@ -44,7 +44,7 @@ std::size_t put_seen_of(const PackedPlane& plane, const std::uint64_t* hides, st
   }
   if (mask == 0) return 0;
   to = put_plane(to, mask, plane.sample, plane.opaque);
-  // All words before any colour: they may overwrite the place of colours.
+  // First all words, then all colours: the words may overwrite the old place of colours.
   const auto put_all = [&](const std::byte* from, std::size_t size) {
     for (std::uint64_t m = kept; m != 0; m &= m - 1, to += size)
       std::memmove(to, from + static_cast<std::size_t>(std::countr_zero(m)) * size, size);
@@ -80,7 +80,7 @@ void FragmentBytes::take(const raster::FragmentPlane& plane) {
   std::byte* word = put_plane(room_in(block, bytes), plane.mask, plane.sample, plane.opaque);
   std::byte* color = word + n * sizeof(std::uint64_t);
   block.fragments += n;
-  // Neighbouring pixels mostly show the same part.
+  // Caches the part, because neighbouring pixels mostly show the same one.
   std::uint64_t first = 0, last = 0, place = 0;
   for (std::uint64_t m = plane.mask; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
@@ -100,7 +100,7 @@ void FragmentBytes::take(const raster::FragmentPlane& plane) {
   }
 }
 
-/// Chunks begin small, for ranks that have few fragments, and double in size a few times.
+/// Chunks begin small, for ranks with few fragments, and double a few times.
 void FragmentBytes::begin_chunk(Memory& own, std::size_t size) {
   constexpr std::size_t kLeast = std::size_t{1} << 12, kDoublings = 5;
   size = std::max(kLeast << std::min(own.taken, kDoublings), size);
@@ -113,7 +113,7 @@ void FragmentBytes::begin_chunk(Memory& own, std::size_t size) {
   own.end = own.at + size;
 }
 
-/// Planes of a block mostly arrive one after the other, so they can mostly lie in one run.
+/// Appends to the block's last run if possible; planes of a block mostly arrive in sequence.
 std::byte* FragmentBytes::room_in(Block& block, std::size_t size) {
   Memory& own = memory_.local();
   if (FragmentRun* const last = block.last; last != nullptr &&
@@ -236,7 +236,7 @@ void FragmentBytes::pack(Mail& mail) const {
     each_run(block, [&](const FragmentRun& run) { bytes += run.bytes; });
     return bytes;
   };
-  // One allocation for each owner.
+  // One allocation per owner.
   std::vector<std::size_t> sizes(mail.ranks());
   for (std::size_t b = 0; b < blocks_.size(); ++b)
     if (const std::uint64_t bytes = bytes_of(blocks_[b]); bytes != 0)
@@ -267,7 +267,7 @@ PackedPlane take_plane(Reader& planes) {
 }
 
 std::size_t layer_owner(std::uint32_t block, std::size_t ranks) {
-  // The high half of a multiplication by the golden ratio's bits, taken to [0, ranks).
+  // The high half of a product with the golden ratio's bits, mapped to [0, ranks).
   const std::uint64_t mixed = (block * std::uint64_t{0x9E3779B97F4A7C15}) >> 32;
   return static_cast<std::size_t>(mixed * ranks >> 32);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The data that a rank has drawn and hands on: the keys of its opaque surfaces, and its translucent
-// fragments on their way to the owners of their pixels. docs/ranks_traffic.md lists what is sent.
+// The data for other ranks: the keys of opaque surfaces, and translucent fragments.
+// docs/ranks_traffic.md lists all messages.
 #pragma once
 
 #include <atomic>
@@ -21,11 +21,11 @@
 
 namespace rastrum::ranks {
 
-/// A fragment between ranks is a word (depth above the inverted place of its part in the list of
-/// all parts, as in opaque words) and the premultiplied colour in float32.
+/// A fragment in a message is a word (depth above the inverted place of its part in the list of all
+/// parts, as for opaque surfaces) and the premultiplied colour in float32.
 inline constexpr std::size_t kFragmentBytes = 24;
 
-/// Takes the keys of opaque surfaces, and no translucent fragments unless a derived one does.
+/// Takes the keys of opaque surfaces.
 class KeySink : public raster::FragmentSink {
  public:
   /// `keys`: null if nobody needs them.
@@ -44,7 +44,7 @@ class KeySink : public raster::FragmentSink {
   SparseBlocks* keys_;
 };
 
-/// Where a rank has fragments that its own opaque surfaces do not hide, and how many.
+/// Finds where a rank has fragments that its own opaque surfaces do not hide, and counts them.
 class LayerSurvey final : public KeySink {
  public:
   LayerSurvey(const BlockGrid& grid, SparseBlocks* keys)
@@ -53,7 +53,7 @@ class LayerSurvey final : public KeySink {
         counts_(grid.count()) {}
   using KeySink::take;
   void take(const raster::FragmentPlane& plane) override;
-  /// By block, in rows.
+  /// One per block, row by row.
   [[nodiscard]] std::span<const std::uint64_t> masks() const { return masks_; }
   [[nodiscard]] std::uint64_t count(std::size_t block) const { return counts_[block]; }
 
@@ -61,23 +61,23 @@ class LayerSurvey final : public KeySink {
   std::vector<std::uint64_t> masks_, counts_;
 };
 
-/// Which places, in the list of all parts, the keys of a pass have.
+/// Maps the keys of a pass to places in the list of all parts.
 struct PlacesOfKeys {
   const OwnParts& own;
   std::span<const std::size_t> places;  ///< of own parts
-  std::uint64_t from_pass;  ///< what is added to an id of the pass for one of the rank's
+  std::uint64_t from_pass;              ///< added to an id of the pass, gives the rank's id
 };
 
-/// At some pixels, by rising block: the greatest opaque words of all ranks, 0 for nothing.
+/// The greatest opaque words of all ranks at some pixels, by rising block; 0 for none.
 struct Hides {
   std::span<const BlockMask> where;
-  std::span<const std::size_t> at;  ///< where the words of each begin
+  std::span<const std::size_t> at;  ///< where each block's words begin
   std::span<const std::uint64_t> words;
 };
 
-/// A header; the bytes of planes that lie together follow it.
+/// A header; its planes' bytes follow.
 struct FragmentRun {
-  std::uint64_t next;  ///< where the block's next one lies (FragmentRun*); 0: it is the last
+  std::uint64_t next;  ///< address of the block's next run; 0: the last one
   std::uint64_t bytes;
 
   [[nodiscard]] static FragmentRun* at(std::uint64_t place) {
@@ -87,26 +87,23 @@ struct FragmentRun {
   [[nodiscard]] std::byte* planes() { return reinterpret_cast<std::byte*>(this + 1); }
 };
 
-/// Returns memory for fragments, of the size asked for, or null if not enough is left. All threads
-/// call it.
+/// Returns memory of the given size for fragments, or null if too little is left. Thread-safe.
 using FragmentRoom = std::function<std::byte*(std::size_t bytes)>;
 
-/// Shaded fragments of a part of the picture, in the order in which one renderer blends this
-/// rank's. They are stored as bytes, in planes of at most one fragment a pixel. A plane is a mask,
-/// a number for its sample and whether its fragments are opaque, then the words of its pixels, then
-/// their colours.
+/// Shaded fragments of a part of the picture, in one renderer's order of blending. They are stored
+/// as planes of at most one fragment per pixel: a mask, a number with the sample and an opaque bit,
+/// the words, then the colours.
 class FragmentBytes final : public KeySink {
  public:
-  /// `most_bytes`: fragments beyond this size are left out. `room`: gives the memory for fragments
-  /// until it returns null.
+  /// Fragments beyond `most_bytes` are dropped. `room` gives memory until it returns null; then
+  /// they take their own.
   FragmentBytes(const BlockGrid& grid, raster::Rect band, PlacesOfKeys places,
                 SparseBlocks* keys = nullptr, std::uint64_t most_bytes = ~std::uint64_t{0},
                 FragmentRoom room = {});
   using KeySink::take;
   void take(const raster::FragmentPlane& plane) override;
-  /// Whether some were left out.
+  /// Whether fragments were dropped.
   [[nodiscard]] bool is_full() const { return bytes_.load() > most_bytes_; }
-  /// Whether some did not fit into `room`.
   [[nodiscard]] bool has_memory_of_its_own() const { return own_memory_.load(); }
   /// Calls f(block, first run) for each block with fragments, in rising order.
   template <class F>
@@ -114,16 +111,16 @@ class FragmentBytes final : public KeySink {
     for (std::size_t b = 0; b < blocks_.size(); ++b)
       if (blocks_[b].first != nullptr) f(number_of(b), blocks_[b].first);
   }
-  /// Calls f(BlockMask) for each block with fragments; the mask has the pixels with some.
+  /// Calls f(BlockMask) for each block with fragments, masking their pixels.
   void each_block(const std::function<void(BlockMask)>& f) const;
-  /// At the pixels where each of `samples` samples has an opaque surface, the least of their words:
-  /// a fragment behind that is seen at no sample.
+  /// The pixels where all `samples` samples have an opaque surface, with the least of their words:
+  /// a fragment behind that is invisible in all samples.
   [[nodiscard]] SparseBlocks hiding(const BlockGrid& grid, int samples) const;
-  /// Removes the fragments that are hidden. Returns how many are left.
+  /// Removes hidden fragments. Returns how many remain.
   std::uint64_t leave_out(const Hides& hides);
-  /// Packs each block for its owner: its number, how many bytes follow, and these.
+  /// Packs each block for its owner: its number, a size in bytes, the bytes.
   void pack(Mail& mail) const;
-  /// Call when memory from `room` has moved: the `bytes` that were at `from` are at `to` now.
+  /// Call when memory from `room` has moved: `bytes` bytes from `from` to `to`.
   void has_moved(std::uint64_t from, std::uint64_t bytes, std::uint64_t to);
 
  private:
@@ -131,10 +128,10 @@ class FragmentBytes final : public KeySink {
     FragmentRun *first = nullptr, *last = nullptr;
     std::uint64_t fragments = 0;
   };
-  /// The memory of one thread. Full chunks stay where they are.
+  /// One thread's memory. Full chunks stay in place.
   struct Memory {
     std::vector<std::unique_ptr<std::byte[]>> chunks;
-    std::size_t taken = 0;  ///< chunks, of `room` too
+    std::size_t taken = 0;  ///< chunks, including those of `room`
     std::byte *at = nullptr, *end = nullptr;
   };
   void begin_chunk(Memory& own, std::size_t size);
@@ -155,13 +152,13 @@ class FragmentBytes final : public KeySink {
   parallel::ScratchPool<Memory> memory_;
 };
 
-/// A plane of FragmentBytes as it lies among bytes.
+/// A plane as FragmentBytes stores it.
 struct PackedPlane {
   std::uint64_t mask;
   int sample;
   bool opaque;
-  const std::byte* words;   ///< one a pixel of the mask
-  const std::byte* colors;  ///< as many Vec4
+  const std::byte* words;   ///< one per pixel of the mask
+  const std::byte* colors;  ///< one Vec4 per pixel of the mask
 
   [[nodiscard]] std::uint64_t word(std::size_t k) const {
     std::uint64_t word = 0;
@@ -171,8 +168,8 @@ struct PackedPlane {
 };
 [[nodiscard]] PackedPlane take_plane(Reader& planes);
 
-/// The rank that blends the layers of a block. Blocks are spread as if at random, so that ranks
-/// have equal work wherever the picture is full.
+/// The rank that blends a block's layers. Blocks are spread as if at random, to balance the work
+/// wherever the picture is full.
 [[nodiscard]] std::size_t layer_owner(std::uint32_t block, std::size_t ranks);
 
 }  // namespace rastrum::ranks

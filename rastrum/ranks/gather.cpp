@@ -48,9 +48,9 @@ OwnImages::OwnImages(std::uint32_t asked, raster::Rect part) {
     if ((asked & bit) == 0) return;
     using Pixel = std::remove_cvref_t<decltype(*view.data)>;
     auto& list = std::get<std::vector<Image<Pixel>>>(images_);
-    view = list.emplace_back(width, height).view();  // an image that moves keeps its pixels' place
-    // The view counts pixels from the picture's corner, so that code that stores pixels need not
-    // know of parts.
+    view = list.emplace_back(width, height).view();  // moving an image keeps its pixels in place
+    // Pixels count from the picture's corner, so that code that stores them need not know about
+    // parts.
     view.data -= part.y0 * view.stride + part.x0;
     view.width = part.x1;
     view.height = part.y1;
@@ -65,7 +65,7 @@ OwnBlocks::OwnBlocks(std::uint32_t asked, std::size_t blocks) {
     static_assert(alignof(Pixel) <= __STDCPP_DEFAULT_NEW_ALIGNMENT__);
     pixels_.push_back(
         std::make_unique_for_overwrite<std::byte[]>(blocks * kPixels * sizeof(Pixel)));
-    // As a vector's memory: pixels begin to live where they are stored.
+    // As in a vector, pixels begin to live when they are stored.
     view = {reinterpret_cast<Pixel*>(pixels_.back().get()), kSide,
             static_cast<int>(blocks) * kSide};
   });
@@ -97,7 +97,6 @@ void OwnBlocks::take(const BlockGrid& grid, std::span<const BlockMask> won,
 
 namespace {
 
-/// Calls f(row, images[k]) for each target that has a narrow form.
 template <class Images, class F>
 void each_narrow(Images& images, const F& f) {
   std::size_t k = 0;

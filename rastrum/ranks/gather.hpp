@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The targets that the root asked for: which ones, images for them on a rank, and the transfer of
-// won pixels from the ranks that have shaded them into the root's targets.
+// The targets that the root asks for, a rank's images for them, and the way of won pixels to the
+// root.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@
 
 namespace rastrum::ranks {
 
-/// Calls f(view, bit) for each target that ranks can fill, in the order in which they are sent.
+/// Calls f(view, bit) for each target that ranks can fill, in the order of sending.
 template <class T, class F>
 constexpr void each_target(T& t, const F& f) {
   std::uint32_t bit = 1;
@@ -27,7 +27,6 @@ constexpr void each_target(T& t, const F& f) {
     if (row.has_ranks()) f(t.*row.image, std::exchange(bit, bit << 1));
   });
 }
-/// The bits of the targets of which pred(row) is true.
 template <class Pred>
 [[nodiscard]] constexpr std::uint32_t bits_of(const Pred& pred) {
   std::uint32_t bits = 0, bit = 1;
@@ -38,10 +37,10 @@ template <class Pred>
   });
   return bits;
 }
-/// The bits of `depth` and `ids`, which follow from words and the list of parts.
+/// The bits of `depth` and `ids`, which words and the list of parts determine.
 inline constexpr std::uint32_t kKnownTargets =
     bits_of([](const auto& row) { return row.kind == raster::TargetKind::key; });
-/// The bits of `color8`, `color` and `linear`, which layers change.
+/// The bits of targets that layers change: `color8`, `color` and `linear`.
 inline constexpr std::uint32_t kColorTargets =
     bits_of([](const auto& row) { return row.kind == raster::TargetKind::color; });
 inline constexpr std::uint32_t kColorTarget =
@@ -49,13 +48,12 @@ inline constexpr std::uint32_t kColorTarget =
 inline constexpr std::uint32_t kLinearTarget =
     bits_of([](const auto& row) { return row.name == "linear"; });
 
-/// The bits of the targets that are not empty.
 [[nodiscard]] std::uint32_t targets_asked(const Targets& targets);
 
-/// The targets whose bits are set; the others are empty.
+/// The targets whose bits are set; the others become empty.
 [[nodiscard]] Targets targets_of(const Targets& targets, std::uint32_t bits);
 
-/// A view of an image whose first row is the picture's row `top`, with coordinates of the picture.
+/// Views an image in the picture's coordinates; its first row is the picture's row `top`.
 template <class T>
 [[nodiscard]] ImageView<T> in_place(ImageView<T> rows, int top) {
   if (rows.empty()) return rows;
@@ -64,14 +62,14 @@ template <class T>
   return rows;
 }
 [[nodiscard]] Targets in_place(const Targets& rows, int top);
-/// The first `rows` rows of each target, 32-bit ones too.
+/// The first `rows` rows of each target, including 32-bit ones.
 [[nodiscard]] Targets first_rows(const Targets& targets, int rows);
 
-/// A rank's own images of a part of the picture, for the targets of these bits.
+/// A rank's images of a part of the picture, for the targets of `asked`.
 class OwnImages {
  public:
   OwnImages(std::uint32_t asked, raster::Rect part);
-  /// Coordinates are the picture's; only pixels of the part exist.
+  /// In the picture's coordinates; only pixels of the part exist.
   [[nodiscard]] const Targets& targets() const { return targets_; }
 
  private:
@@ -83,15 +81,15 @@ class OwnImages {
   Targets targets_;
 };
 
-/// A rank's own pixels in some blocks, for the targets of these bits. Each target has 64 pixels a
-/// block, one block after the other. They are not cleared.
+/// A rank's pixels in some blocks, for the targets of `asked`: 64 per block and target, block after
+/// block, uninitialized.
 class OwnBlocks {
  public:
   OwnBlocks(std::uint32_t asked, std::size_t blocks);
-  /// The targets of block k without depth and ids, with coordinates of the picture; (x0, y0) is the
-  /// block's upper left pixel.
+  /// Block k's targets without depth and ids, in the picture's coordinates; (x0, y0) is its upper
+  /// left pixel.
   [[nodiscard]] Targets at(std::size_t k, int x0, int y0) const;
-  /// Copies the blocks `won` from images that have them at their places in the picture.
+  /// Copies the blocks `won` from images of the picture.
   void take(const BlockGrid& grid, std::span<const BlockMask> won, const Targets& images) const;
   /// The targets of all blocks; pixel i of block k is at (i % 8, 8 k + i / 8).
   [[nodiscard]] const Targets& targets() const { return targets_; }
@@ -101,22 +99,21 @@ class OwnBlocks {
   Targets targets_, shaded_;
 };
 
-/// Ranks send numbers of 64 bits. This class converts them for a root that asked for 32.
+/// Ranks send 64-bit numbers; this converts them for a root that asked for 32 bits.
 class WideTargets {
  public:
-  /// `targets` with images of this object in the place of narrow ones.
+  /// Replaces narrow targets by images of this object.
   [[nodiscard]] Targets widen(const Targets& targets, int width, int height);
-  /// Converts into the caller's `targets`. Throws Error{invalid_argument} for a number that 32 bits
-  /// do not hold.
+  /// Converts into the caller's `targets`. Throws Error{invalid_argument} if a number does not fit.
   void narrow(const Targets& targets) const;
 
  private:
   std::array<Image<std::int64_t>, 3> images_;  ///< of the targets that have a narrow form
 };
 
-/// Packs the pixels of `won`, all of whose blocks are in `own`.
+/// Packs the pixels of `won`; `own` has the same blocks.
 void send_pixels(std::span<const BlockMask> won, const OwnBlocks& own, Bytes& to);
-/// The receiving side: stores the pixels in the root's targets, of which the same ones are set.
+/// Unpacks them into the root's targets, which must be the same ones.
 void take_pixels(const BlockGrid& grid, Reader from, const Targets& targets);
 
 }  // namespace rastrum::ranks

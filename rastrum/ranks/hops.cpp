@@ -7,7 +7,7 @@
 namespace rastrum::ranks {
 namespace {
 
-/// A letter's header: its sender, its receiver, its length.
+/// A letter's header: sender, receiver, length.
 constexpr std::size_t kLetterBytes = 2 * sizeof(std::uint32_t) + sizeof(std::uint64_t);
 
 void put_letter(Bytes& to, std::uint32_t from, std::uint32_t whom,
@@ -18,7 +18,7 @@ void put_letter(Bytes& to, std::uint32_t from, std::uint32_t whom,
   to.insert(to.end(), bytes.begin(), bytes.end());
 }
 
-/// Calls f(from, to, bytes) for each letter that has come.
+/// Calls f(from, to, bytes) for each letter received.
 template <class F>
 void each_letter(const Mail& mail, const std::vector<std::size_t>& senders, const F& f) {
   for (const std::size_t r : senders)
@@ -105,7 +105,7 @@ void exchange_by_hops(Communicator& ranks, const AtPhase& at, Mail& mail, std::s
 
 bool hops_cost_less(Communicator& ranks, std::uint64_t bytes, std::uint64_t receivers) {
   const auto n = static_cast<std::size_t>(ranks.size());
-  // All tell all how much they send.
+  // Every rank tells every other how much it sends.
   const std::uint64_t direct = ranks.max((n - 1 + receivers) * kBytesAMessage + bytes);
   const std::uint64_t hops =
       2 * HopGrid(n).messages() * kBytesAMessage + 2 * (bytes + receivers * kLetterBytes);

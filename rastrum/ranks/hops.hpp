@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Mail by two hops. Ranks form a grid; each sends its mail first along its row and then along the
-// receiver's column. So a rank talks to some 2 √N ranks instead of N, and each byte is sent twice.
+// Mail in two hops. Ranks form a grid; each sends its mail along its row, then along the receiver's
+// column. So a rank talks to about 2 √N ranks instead of N, and each byte is sent twice.
 #pragma once
 
 #include <cstddef>
@@ -13,9 +13,9 @@
 
 namespace rastrum::ranks {
 
-/// Bytes that travel while one message more is sent: half a microsecond at 20 GB/s.
+/// The cost of a message in bytes: half a microsecond at 20 GB/s.
 inline constexpr std::uint64_t kBytesAMessage = 10'000;
-/// With fewer ranks each sends to each.
+/// Fewer ranks send directly.
 inline constexpr std::size_t kLeastForHops = 16;
 
 class HopGrid {
@@ -26,12 +26,11 @@ class HopGrid {
     const std::size_t m = from / columns_ * columns_ + to % columns_;
     return m < ranks_ ? m : m - columns_;  // the last row may be short
   }
-  /// The ranks to which a rank sends in the first and in the second hop, and from which it
-  /// receives.
+  /// The peers of a rank in the first and in the second hop.
   [[nodiscard]] std::vector<std::size_t> first_to(std::size_t rank) const;
   [[nodiscard]] std::vector<std::size_t> first_from(std::size_t rank) const;
-  [[nodiscard]] std::vector<std::size_t> second(std::size_t rank) const;  ///< both ways
-  /// The most messages that a rank sends in both hops, messages with sizes included.
+  [[nodiscard]] std::vector<std::size_t> second(std::size_t rank) const;  ///< in both directions
+  /// The most messages of a rank in both hops, including those with sizes.
   [[nodiscard]] std::uint64_t messages() const {
     return 2 * (columns_ + (ranks_ + columns_ - 1) / columns_ - 2);
   }
@@ -43,16 +42,16 @@ class HopGrid {
 /// Sends `mail` to all ranks directly: sizes, room for what comes, contents.
 void exchange_with_all(Communicator& ranks, const AtPhase& at, Mail& mail, std::string_view room);
 
-/// One hop: sends sizes, makes room, sends the contents of `mail`, which is for no rank but these.
+/// One hop: sends sizes, makes room, sends `mail`, which is only for these ranks.
 void exchange_among(Communicator& ranks, const AtPhase& at, Mail& mail,
                     const std::vector<std::size_t>& to, const std::vector<std::size_t>& from,
                     std::string_view room);
 
-/// Has the result of an exchange of all with all: `mail` then has what came from each rank.
+/// Same result as exchange_with_all.
 void exchange_by_hops(Communicator& ranks, const AtPhase& at, Mail& mail, std::string_view room);
 
-/// Whether hops cost less where this rank has `bytes` for `receivers` other ranks. Costs are bytes;
-/// each message counts as kBytesAMessage more. The busiest rank decides. A collective.
+/// Whether hops cost less, given `bytes` for `receivers` other ranks. The cost is in bytes, plus
+/// kBytesAMessage per message; the busiest rank decides. A collective call.
 [[nodiscard]] bool hops_cost_less(Communicator& ranks, std::uint64_t bytes,
                                   std::uint64_t receivers);
 

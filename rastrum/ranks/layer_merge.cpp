@@ -19,7 +19,7 @@ namespace {
 
 using transparency::SeenPixel;
 
-/// Where a pixel has more, they are sorted by std::stable_sort, which allocates.
+/// Longer lists are sorted by std::stable_sort, which allocates.
 constexpr std::size_t kShortList = 24;
 
 struct Fragment {
@@ -27,7 +27,7 @@ struct Fragment {
   const std::byte* color;  ///< Vec4
 };
 
-/// As SeenBlock has it.
+/// Writes the bytes of a SeenBlock.
 void put_seen(BlockMask where, const transparency::Seen& seen, std::byte* at) {
   const auto write = [&](const auto& value) {
     std::memcpy(at, &value, sizeof(value));
@@ -38,7 +38,7 @@ void put_seen(BlockMask where, const transparency::Seen& seen, std::byte* at) {
   for (std::uint64_t m = where.mask; m != 0; m &= m - 1) write(seen.at(std::countr_zero(m)));
 }
 
-/// One block; what it works in is kept.
+/// Blends one block; reused to keep its memory.
 class BlockBlend {
  public:
   void begin(const LayerMerge& merge) {
@@ -53,7 +53,7 @@ class BlockBlend {
       planes_[static_cast<std::size_t>(plane.sample)].push_back(plane);
     }
   }
-  /// Where some are.
+  /// The pixels with fragments.
   [[nodiscard]] std::uint64_t where() const {
     std::uint64_t mask = 0;
     for (const auto& of_sample : planes_)
@@ -94,7 +94,7 @@ class BlockBlend {
     }
   }
 
-  /// The nearest opaque ones, which are seen behind all before them, as far as these let.
+  /// Finds the nearest opaque fragments; layers before them are blended over them.
   void find_surfaces(const std::vector<PackedPlane>& planes) {
     behind_ = {};
     surfaces_.fill(0);
@@ -108,8 +108,8 @@ class BlockBlend {
     }
   }
 
-  /// Deals the fragments of all ranks to their pixels, the nearest first. A part is on one rank,
-  /// whose planes come in order, so equal words are.
+  /// Sorts the fragments of all ranks into their pixels' lists, nearest first. Equal words keep
+  /// their order: they are of one part, so of one rank, whose planes come in order.
   void deal(const std::vector<PackedPlane>& planes) {
     counts_.fill(0);
     if (fragments_.size() < kPixels * planes.size()) fragments_.resize(kPixels * planes.size());
@@ -136,7 +136,7 @@ class BlockBlend {
       f(static_cast<std::size_t>(std::countr_zero(m)),
         Fragment{plane.word(k), plane.colors + k * sizeof(Vec4)});
   }
-  /// A pixel's: it has at most one fragment of each plane.
+  /// A pixel's list has at most one fragment of each plane.
   [[nodiscard]] Fragment* list_of(std::size_t pixel, std::size_t planes) {
     return fragments_.data() + pixel * planes;
   }
@@ -148,10 +148,10 @@ class BlockBlend {
 
   const transparency::BlendKernels* kernel_ = nullptr;
   float opaque_at_ = 0;
-  std::vector<std::vector<PackedPlane>> planes_;  ///< of each sample, in the order of ranks
+  std::vector<std::vector<PackedPlane>> planes_;  ///< of each sample, by rank
   std::vector<Fragment> fragments_;
   std::array<std::size_t, kPixels> counts_{};      ///< of each pixel
-  std::array<std::uint64_t, kPixels> surfaces_{};  ///< their words; 0: none
+  std::array<std::uint64_t, kPixels> surfaces_{};  ///< opaque words; 0: none
   transparency::Seen seen_{};
   raster::BlockColors behind_{};
 };

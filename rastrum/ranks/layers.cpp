@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The colours of a frame with translucent surfaces. Opaque surfaces meet as words, and the rank
-// that has won a pixel shades it. Translucent fragments before them go to an owner of their block,
-// which blends those of all ranks. The root blends the result over the opaque colours, and that
-// over the background.
+// The colours of a frame with translucent surfaces. Opaque surfaces meet as words; the rank that
+// wins a pixel shades it. Translucent fragments in front go to their block's owner, which blends
+// those of all ranks. The root blends the result over the opaque colours, and that over the
+// background.
 #include <algorithm>
 #include <bit>
 #include <utility>
@@ -20,24 +20,24 @@ namespace {
 using raster::kBinSize;
 using raster::Rect;
 
-/// The key of pixels where no fragment of this rank is seen: nearer than any surface, and of no
-/// pass. The depth is below 2, because the bits of 2 would make a key negative for kernels that
-/// compare signed numbers.
+/// The key of pixels where no fragment of this rank is visible: nearer than any surface, and of no
+/// pass. The depth is below 2, whose bits would make the key negative in kernels that compare
+/// signed numbers.
 constexpr std::uint64_t kNearest = std::uint64_t{std::bit_cast<std::uint32_t>(1.5F)}
                                        << raster::kIdBits |
                                    (raster::kIdMask - raster::kMaxId);
 
-/// The target with opaque colours as blending needs them: premultiplied, over nothing, in linear
-/// light for Shader::material. Asking for kLinearTarget makes a renderer shade the whole picture in
-/// linear light, as it does where something is translucent.
+/// The target for opaque colours as blending needs them: premultiplied, over nothing, in linear
+/// light for Shader::material. kLinearTarget makes a renderer shade the whole picture in linear
+/// light, as it does where something is translucent.
 std::uint32_t behind_target(Shader shader) {
   return shader == Shader::material ? kLinearTarget : kColorTarget;
 }
 
 }  // namespace
 
-/// Whether some rank has surfaces that blend. A renderer finds that out when it prepares its draws,
-/// so each rank draws a picture of one pixel, with a sink that takes no fragments.
+/// Whether any rank has surfaces that blend. A renderer finds out only as it prepares its draws, so
+/// each rank draws one pixel, with a sink that takes no fragments.
 bool PartsFrame::finds_layers(const Camera& camera, Transparency method) {
   phase("look for layers", [&] {
     if (own_->parts.empty()) return;
@@ -57,8 +57,8 @@ bool PartsFrame::finds_layers(const Camera& camera, Transparency method) {
   return ranks_.max(translucent_ ? 1 : 0) != 0;
 }
 
-/// Methods that approximate the order of layers would approximate that of one rank's layers alone.
-/// One rank refuses them too, so that a program does not depend on how many ranks there are.
+/// Refuses approximate methods, which would see only one rank's layers. One rank refuses them too,
+/// so that programs do not depend on the number of ranks.
 void PartsFrame::refuse_approximations(const Camera& camera) {
   const Transparency method = frame_.transparency.method;
   if (method == Transparency::exact || method == Transparency::none ||
@@ -77,9 +77,9 @@ std::uint64_t PartsFrame::most_fragment_bytes() const {
   return limit == 0 ? options_.fragment_bytes : std::min(options_.fragment_bytes, limit / 4);
 }
 
-/// Draws all in one pass, in the hope that the fragments fit. The limit is divided by three:
-/// fragments are held by block, then packed, and a rank blends its share of all, which may be as
-/// much again.
+/// Draws everything in one pass, hoping that the fragments fit. The limit is divided by three:
+/// fragments are held by block and packed, and a rank's share of all, which it blends, may be as
+/// large again.
 void PartsFrame::hold_fragments(const Camera& camera) {
   FragmentRoom room;
   if (!surface_.empty())
@@ -142,13 +142,12 @@ SharedLayers PartsFrame::shared_layers() const {
   return {surface_.subspan(words_of_surface_), grid_->count(), ranks_.size()};
 }
 
-/// Finds out, after the agreement on what ranks hold, whether all of it fits into memory that they
-/// share.
+/// After the agreement on sizes: finds out whether all fragments fit into shared memory.
 void PartsFrame::share_layers() {
   if (surface_.empty()) return;
   const std::uint64_t size = words_of_surface_ + shared_layers().size();
   if (size > most_shared_) return;
-  // A quarter more than needed: a later frame with a little more fits, too.
+  // A quarter more, so that a slightly fuller later frame fits too.
   if (size > surface_.size()) {
     std::span<std::uint64_t> more = ranks_.share(std::min(size + size / 4, most_shared_));
     if (more.empty()) more = ranks_.share(size);
@@ -240,7 +239,7 @@ void PartsFrame::gather_behind(std::span<const BlockMask> won) {
   });
 }
 
-/// The nearest opaque words of all ranks, where this rank has fragments.
+/// Finds the nearest opaque words of all ranks where this rank has fragments.
 void PartsFrame::ask_what_hides(const Words::Won& won) {
   if (surface_.empty()) return ask_owners_what_hides(won.own);
   locally("look what hides", [&] {
@@ -254,7 +253,6 @@ void PartsFrame::ask_what_hides(const Words::Won& won) {
   });
 }
 
-/// Where this rank has fragments, in rising order of blocks.
 void PartsFrame::note_asks() {
   const auto ask = [&](BlockMask b) {
     if (b.mask != 0) asks_.push_back(b);
@@ -283,7 +281,7 @@ void PartsFrame::ask_owners_what_hides(const std::vector<std::uint64_t>& own_wor
   });
   exchange(answers, "make room for what hides");
   locally("take what hides", [&] {
-    // Owners have rising runs of blocks, so their answers together are in the order of the asks.
+    // Owners have rising runs of blocks, so their answers come in the order of the asks.
     for (std::size_t r = 0; r < answers.ranks(); ++r)
       for (Reader from = answers.from(r); !from.at_end();)
         hides_.push_back(from.take<std::uint64_t>());
@@ -295,7 +293,7 @@ void PartsFrame::ask_owners_what_hides(const std::vector<std::uint64_t>& own_wor
   });
 }
 
-/// All ranks plan the same bands, from the sums that the root broadcasts.
+/// All ranks plan the same bands, from counts that the root broadcasts.
 std::vector<Rect> PartsFrame::plan_bands() {
   const int columns = (frame_.width + kBinSize - 1) / kBinSize;
   const int rows = (band_.y1 - band_.y0 + kBinSize - 1) / kBinSize;
@@ -338,9 +336,9 @@ std::vector<Rect> PartsFrame::plan_bands() {
   return bands;
 }
 
-/// For a pass of own parts from `first` on, in a band: for each pixel with fragments the key behind
-/// which no fragment of these parts is seen. If the opaque surface there is another rank's, parts
-/// that precede its part in the list are in front of it at equal depth.
+/// For a pass of own parts from `first` on, in a band: for each pixel with fragments, the key
+/// behind which none of them is visible. If the opaque surface there is another rank's, earlier
+/// parts in the list are in front of it at equal depth.
 Image<std::uint64_t> PartsFrame::keys_that_hide(Rect band, std::size_t first) const {
   Image<std::uint64_t> keys(band.x1 - band.x0, band.y1 - band.y0);
   std::ranges::fill(keys.pixels(), kNearest);
@@ -366,8 +364,8 @@ Image<std::uint64_t> PartsFrame::keys_that_hide(Rect band, std::size_t first) co
       const bool is_own = part < places_.size() && places_[part] == place;
       const std::uint64_t id =
           is_own ? raster::id_of_key(keys_.of(ask->block)[i]) : own_->first_ids[part];
-      // May be below the pass's first id or above its last. It stays in range: on either side there
-      // are at least as many ids of all ranks as own ones.
+      // May lie outside the pass's ids, but stays in range: on either side there are at least as
+      // many ids of all ranks as own ones.
       const std::uint64_t of_pass = base + id - lowest;
       key = (word & ~raster::kIdMask) | (raster::kIdMask - of_pass);
     });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Shadows over ranks. A light's picture holds the nearest depth at each pixel, so it is the maximum
-// of what ranks draw of their own parts: bit for bit that of one renderer, whichever rank holds a
-// part. Rows meet at an owner, which sends them to all.
+// of the ranks' pictures: bit for bit one renderer's, whichever rank holds a part. Each row has an
+// owner, which merges it and sends it to all.
 #include <algorithm>
 #include <cstring>
 #include <optional>
@@ -18,7 +18,6 @@ struct Rows {
   std::uint32_t first = 0, last = 0;
 };
 
-/// The rows that rank r of n owns.
 Rows own_rows(std::size_t r, std::size_t n, int height) {
   const auto rows = static_cast<std::size_t>(height);
   return {static_cast<std::uint32_t>(r * rows / n), static_cast<std::uint32_t>((r + 1) * rows / n)};
@@ -29,7 +28,7 @@ bool is_empty(ImageView<float> depth, std::uint32_t y) {
   return std::all_of(row, row + depth.width, [](float d) { return d == 0; });
 }
 
-/// Packs these rows, without empty ones at the beginning and the end.
+/// Packs these rows without empty ones at either end.
 void put_rows(ImageView<float> depth, Rows rows, Bytes& to) {
   while (rows.first < rows.last && is_empty(depth, rows.first)) ++rows.first;
   while (rows.first < rows.last && is_empty(depth, rows.last - 1)) --rows.last;
@@ -44,7 +43,7 @@ void put_rows(ImageView<float> depth, Rows rows, Bytes& to) {
   }
 }
 
-/// Keeps the greater of the depth that is there and the one received. Depths are not negative.
+/// Keeps the greater depths, which are not negative.
 void take_rows(Reader from, ImageView<float> depth) {
   while (!from.at_end()) {
     const auto rows = from.take<Rows>();
@@ -111,7 +110,7 @@ void PartsFrame::draw_shadows(const Camera& camera) {
     LightDepths depths(ranks_, at_);
     shadows_ = RendererAccess::shadows(renderer_, own_scene(), camera, frame_, depths);
   }
-  // The shadows are all ranks'; no pass may make shadows of its own rank's parts.
+  // The shadows are of all ranks; no pass may make shadows from its own parts only.
   frame_.shadows = false;
 }
 

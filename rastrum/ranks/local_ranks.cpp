@@ -37,8 +37,8 @@ class LocalRank final : public Communicator {
   void max_of_each(std::span<std::uint64_t> values) override {
     while (!values.empty()) {
       const auto now = values.first(std::min(values.size(), kMostValues));
-      // One meeting is enough: the slot is written again only after the next one, to which all come
-      // after they have read it.
+      // One meeting suffices: a slot is reused only after the next meeting, and all come to that
+      // after they have read the slot.
       turn_ = 1 - turn_;
       std::ranges::copy(now, shared_.posts[me_].values[turn_].begin());
       shared_.meet();
@@ -58,7 +58,7 @@ class LocalRank final : public Communicator {
       if (rank_ == 0) {
         try {
           shared_.surface.resize(count);
-        } catch (const std::exception&) {  // all go without it
+        } catch (const std::exception&) {  // all go without shared memory
         }
       }
       shared_.meet();
@@ -104,7 +104,7 @@ class LocalRank final : public Communicator {
     shared_.traffic[me_].bytes += bytes;
     ++shared_.traffic[me_].messages;
   }
-  /// Counts log N rounds, as with trees and recursive doubling.
+  /// log N rounds, as with trees and recursive doubling.
   void count_rounds(std::uint64_t bytes) {
     for (std::size_t r = 1; r < shared_.posts.size(); r *= 2) count(bytes);
   }
@@ -123,7 +123,7 @@ class LocalRank final : public Communicator {
 
 }  // namespace
 
-/// The memory that the threads share: where each puts what the others read, and where they meet.
+/// The memory that the threads share.
 struct LocalRanks::Shared {
   /// Written by one rank; others read it between two meetings.
   struct Post {
@@ -145,7 +145,7 @@ struct LocalRanks::Shared {
     begin_run();
   }
 
-  /// Returns once all ranks are here. Throws once one has left or returned.
+  /// Waits until all ranks are here. Throws once one has left or returned.
   void meet() {
     const std::uint32_t mine = meeting.load();
     if ((mine & kGone) != 0) throw_gone();
@@ -160,8 +160,7 @@ struct LocalRanks::Shared {
     if ((meeting.load() & ~kGone) == mine) throw_gone();
   }
 
-  /// Marks that a rank has gone. `first` becomes `rank`, unless another has gone in the same way
-  /// before.
+  /// Marks that `rank` has gone; `first` keeps the first rank that has gone this way.
   void go(std::uint32_t how, std::atomic<int>& first, int rank) {
     int nobody = -1;
     first.compare_exchange_strong(nobody, rank);
@@ -186,20 +185,20 @@ struct LocalRanks::Shared {
   static constexpr std::uint32_t kLeft = 1, kReturned = 2, kGone = 3, kMeeting = 4;
 
   const bool shares;
-  std::vector<std::uint64_t> surface;  ///< what they share; grown by rank 0 while all wait
+  std::vector<std::uint64_t> surface;  ///< shared memory; rank 0 grows it while all wait
   std::atomic<std::uint32_t> arrived = 0;
-  /// The number of meetings times kMeeting; plus kLeft once a rank has left by an exception, and
-  /// kReturned once one has returned.
+  /// kMeeting times the number of meetings; plus kLeft once a rank has thrown, and kReturned once
+  /// one has returned.
   std::atomic<std::uint32_t> meeting = 0;
   std::atomic<int> left = -1, returned = -1;  ///< the first such rank; −1: none
   std::vector<Post> posts;
   std::vector<Traffic> traffic;
   std::vector<std::exception_ptr> failures;
 
-  const FunctionRef<void(Communicator&)>* job = nullptr;  ///< of this turn; null: the last one
+  const FunctionRef<void(Communicator&)>* job = nullptr;  ///< of this turn; null: end
   std::atomic<std::uint32_t> turn = 0, busy = 0;
   std::atomic<bool> running = false;
-  std::vector<std::jthread> threads;  ///< what they read is destroyed after them
+  std::vector<std::jthread> threads;  ///< last member, so that the threads end before what they use
 };
 
 LocalRanks::LocalRanks(int ranks, int node) {
@@ -253,7 +252,7 @@ void LocalRanks::run(FunctionRef<void(Communicator&)> f) {
   shared.begin_run();
   while (const std::uint32_t busy = shared.busy.load()) shared.busy.wait(busy);
   shared.running = false;
-  // The rank that left first has the cause; the others have thrown because it had left.
+  // The rank that left first has the cause; the others threw because it had left.
   if (const int left = shared.left; left >= 0)
     std::rethrow_exception(shared.failures[static_cast<std::size_t>(left)]);
 }

@@ -15,7 +15,7 @@
 namespace rastrum::ranks {
 namespace {
 
-/// A light as bytes: what all kinds have, which kind, and what that has.
+/// A light as bytes: the common fields, its kind, that kind's fields.
 void put_light(Bytes& to, const Light& light) {
   put(to, light.color);
   put(to, light.intensity);
@@ -61,7 +61,7 @@ std::vector<ScalarMapping> mappings_of(Communicator& ranks, const AtPhase& at,
                                        const SceneView& scene) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   std::vector<ScalarMapping> mappings;
-  std::vector<ScalarRange> in_use;  // by the mapping's index
+  std::vector<ScalarRange> in_use;  // by mapping
   in_phase(ranks, at, "look at numbers", [&] {
     mappings.assign(scene.scalar_mappings.begin(), scene.scalar_mappings.end());
     for (std::size_t m = 0; m < mappings.size(); ++m)

@@ -9,12 +9,12 @@
 
 namespace rastrum::ranks {
 
-/// Whether a mapping's range is that of the numbers in the scene.
+/// Whether a mapping takes its range from the scene's numbers.
 [[nodiscard]] inline bool takes_range(const ScalarMapping& m) {
   return !m.range && m.categories.empty();
 }
 
-/// As mappings_of_ranks(), with the hook by which a test makes phases fail.
+/// As mappings_of_ranks(), with a hook for tests to make phases fail.
 [[nodiscard]] std::vector<ScalarMapping> mappings_of(Communicator& ranks, const AtPhase& at,
                                                      const SceneView& scene);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which parts there are, who has them and how their primitives are numbered.
+// All parts, their ranks, and the numbering of their primitives.
 #pragma once
 
 #include <cstdint>
@@ -13,34 +13,35 @@ namespace rastrum::ranks {
 
 /// A rank's own instances in rising order of their parts.
 struct OwnParts {
-  /// Throws Error{invalid_argument} unless there is a number for each instance, below 2⁶³.
+  /// Throws Error{invalid_argument} unless each instance has a number below 2⁶³.
   OwnParts(const SceneView& scene, std::span<const std::uint64_t> parts);
 
-  std::vector<InstanceView> instances;  ///< behind the parts there may be one without primitives
+  std::vector<InstanceView> instances;  ///< may have one more without primitives behind the parts
   std::vector<std::uint64_t> parts;
-  /// The first local id of each, and behind the last.
+  /// The first local id of each part, then the end.
   std::vector<std::uint64_t> first_ids;
 
-  /// The instance that has primitive `id` of this rank.
+  /// The instance of this rank's primitive `id`.
   [[nodiscard]] std::size_t instance_of(std::uint64_t id) const;
 };
 
-/// All parts of all ranks, in rising order; the same on all ranks.
+/// All parts in rising order; the same on all ranks.
 class PartList {
  public:
   struct Part {
     std::uint64_t number = 0;
     std::uint64_t primitives = 0;
-    std::uint64_t first_id = 0;  ///< of all ranks' primitives in this order
+    std::uint64_t first_id = 0;  ///< among all ranks' primitives in this order
     int rank = 0;
   };
-  /// From what each rank has told (tell). Throws Error{invalid_argument} where two have one number.
+  /// From the mail that each rank has packed by tell(). Throws Error{invalid_argument} if a number
+  /// occurs twice.
   explicit PartList(const Mail& mail);
   static void tell(const OwnParts& own, Mail& mail);
 
   [[nodiscard]] std::span<const Part> parts() const { return parts_; }
   [[nodiscard]] std::uint64_t primitives() const { return primitives_; }
-  /// The places in parts() of those of `rank`, rising: of its instances in OwnParts.
+  /// The places of `rank`'s parts in parts(), rising, so in the order of OwnParts.
   [[nodiscard]] std::vector<std::size_t> places_of(int rank) const;
 
  private:

@@ -33,8 +33,7 @@ void check_root_targets(const Targets& targets, const FrameOptions& o) {
                 "a picture of several ranks has no targets overdraw, errors, keys and extra");
 }
 
-/// Hash (FNV-1a) of options that must be the same on all ranks. Differences in others show in the
-/// picture.
+/// Hash (FNV-1a) of options that must agree. Differences in others show in the picture.
 std::uint64_t fingerprint(const Camera& camera, const FrameOptions& o, const RanksOptions& r) {
   std::uint64_t hash = 0xCBF29CE484222325U;
   const auto add = [&](const auto& value) {
@@ -48,7 +47,7 @@ std::uint64_t fingerprint(const Camera& camera, const FrameOptions& o, const Ran
         static_cast<int>(o.tone.tone), static_cast<int>(o.lights.size()), o.samples,
         o.shadows ? 1 : 0, r.rows, o.shadow_size})
     add(number);
-  // Lights count only by what decides who has a shadow, and how bright each is.
+  // Only what decides whether a light has a shadow, and how bright it is.
   for (const Light& light : o.lights) {
     add(light.kind.index());
     add(has_shadow(light));
@@ -68,7 +67,7 @@ std::uint64_t fingerprint(const Camera& camera, const FrameOptions& o, const Ran
 
 void PartsFrame::begin(const SceneView& scene, std::span<const std::uint64_t> parts,
                        const Camera& camera) {
-  // All that ranks must know of each other before they draw goes with the first agreement.
+  // The first agreement carries all that ranks must know of each other before drawing.
   enum { kPrint, kOpposite, kRanges, kWith, kWithout, kNoLimit, kNumbers };
   std::array<std::uint64_t, kNumbers> told{};
   static_assert(kNumbers <= kMostNumbers);
@@ -97,7 +96,7 @@ void PartsFrame::begin(const SceneView& scene, std::span<const std::uint64_t> pa
     told[kNoLimit] = limit == 0 ? 0 : ~limit;
   };
   phase("check", look, told);
-  // All ranks have the same numbers, so all throw the same.
+  // All ranks have the same numbers, so all throw the same error.
   if (told[kPrint] != ~told[kOpposite])
     reject("rank 0: the ranks were given different cameras, frames or options");
   if (told[kWith] != 0 && told[kWithout] != 0)
@@ -123,7 +122,7 @@ void PartsFrame::share_words(std::uint64_t least_limit) {
   };
   const std::uint64_t count = blocks(frame_.width) * blocks(rows);
   const std::uint64_t table = SharedLayers::table_size(count, ranks_.size());
-  // Without a limit, the usual most: where the picture is large, sparse words may be few.
+  // At most 1 GiB: in a larger picture sparse words may be few.
   most_shared_ = std::min(least_limit / 4, std::uint64_t{1} << 30) / sizeof(std::uint64_t);
   words_of_surface_ = count * kPixels;
   if (words_of_surface_ + table > most_shared_) return;
@@ -209,7 +208,6 @@ void PartsFrame::draw_alone(const Camera& camera, const Targets& targets) {
   });
 }
 
-/// The same for a band.
 void PartsFrame::draw_band_alone(const Camera& camera) {
   phase("draw", [&] {
     const FrameStats stats = RendererAccess::render(renderer_, own_scene(), camera, untoned(),
@@ -220,7 +218,7 @@ void PartsFrame::draw_band_alone(const Camera& camera) {
   });
 }
 
-/// A device does not pass opaque surfaces to a sink; it fills an image of keys instead.
+/// A device gives no opaque surfaces to a sink; it fills an image of keys instead.
 SparseBlocks* PartsFrame::keys_of_sink() {
   return renderer_.options().device == Device::cuda ? nullptr : &keys_;
 }
@@ -245,8 +243,8 @@ FrameStats PartsFrame::draw_survey(const Camera& camera) {
   return draw_own(camera, unlit(), *survey_);
 }
 
-/// With Shader::id, a pass may draw only neighbouring parts (end_of_run), and needs to know
-/// beforehand what hides its fragments.
+/// With Shader::id a pass draws only neighbouring parts (end_of_run), and must know beforehand what
+/// hides its fragments.
 bool PartsFrame::draw_surfaces(const Camera& camera) {
   std::array<std::uint64_t, 3> told{};
   phase(
@@ -302,7 +300,7 @@ std::size_t PartsFrame::end_of_run(std::size_t first) const {
   return last;
 }
 
-/// Depths and ids of the pixels that this rank has won; both follow from its keys.
+/// Depths and ids of the pixels that this rank has won; keys determine both.
 void PartsFrame::tell_known(std::span<const BlockMask> won) {
   const Targets& own = pixels_->targets();
   for (std::size_t k = 0; k < won.size() && !(own.depth.empty() && own.ids.empty()); ++k)
@@ -317,7 +315,7 @@ void PartsFrame::tell_known(std::span<const BlockMask> won) {
     }
 }
 
-/// Shades the pixels that this rank has won from their keys: nothing is rasterized again.
+/// Shades won pixels from their keys, without rasterizing again.
 void PartsFrame::shade(const Camera& camera, const FrameOptions& frame, std::uint32_t asked,
                        std::span<const BlockMask> won) {
   locally("shade", [&] {
@@ -369,7 +367,7 @@ void PartsFrame::gather(std::span<const BlockMask> won, std::uint32_t asked) {
   });
 }
 
-/// Fills all pixels as a scene without instances does.
+/// Fills all pixels as for a scene without instances.
 void PartsFrame::show_nothing(const Targets& targets) const {
   raster::FrameRequest request;
   request.width = frame_.width;
@@ -390,7 +388,6 @@ void PartsFrame::show_nothing(const Targets& targets) const {
 
 void PartsFrame::finish(const Targets& targets) {
   phase("finish", [&] {
-    // For the next rows.
     if (own_rank() == 0 && !surface_.empty()) shared_layers().clear_room();
     if (is_root()) {
       FrameOptions of_band = frame_;
@@ -443,7 +440,7 @@ RanksStats PartsFrame::draw(const SceneView& scene, std::span<const std::uint64_
   return stats_;
 }
 
-/// Draws the rows of band_; all agreements that do not depend on rows have been made.
+/// Draws the rows of band_; agreements that do not depend on rows are already made.
 void PartsFrame::draw_rows(const Camera& camera, const Targets& targets) {
   locally("begin rows", [&] {
     pixels_.reset();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The same as the public function, with a place for tests to fail at, and with edges.
+// The public function, with edges and a hook for tests to fail at.
 #pragma once
 
 #include <rastrum/effects.hpp>
@@ -7,11 +7,11 @@
 
 namespace rastrum::ranks {
 
-/// Edges of the triangles that are seen, beside a frame whose ids are asked for: of each pixel by
-/// who has won it.
+/// Edges of the visible triangles, for a frame whose ids are asked for. The rank that wins a pixel
+/// computes its edges.
 struct EdgesOfParts {
   EdgeLines lines;            ///< the same on all ranks
-  ImageView<float> factor{};  ///< the root's, as Effects::edges fills it
+  ImageView<float> factor{};  ///< on the root, as Effects::edges fills it
 };
 
 RanksStats render_parts(Communicator& ranks, Renderer& renderer, const SceneView& scene,

@@ -58,7 +58,7 @@ void RootPicture::take_block(const SeenBlock& block) {
       .finish(block.seen, behind_[b] ? *behind_[b] : kNothing, out);
   stored_[b] = 1;
   if (request_.samples > 1) {
-    // It is seen alone, and nothing through it.
+    // It is final, with nothing seen through it.
     for (std::uint64_t m = block.where.mask; m != 0; m &= m - 1)
       out.set(std::countr_zero(m), block.seen.at(std::countr_zero(m)).color);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The root's picture where layers are: the layers that owners of blocks have blended, over the
-// opaque colours of the ranks that have won, over the background.
+// The root's picture of a frame with layers: the owners' blended layers over the winners' opaque
+// colours over the background.
 #pragma once
 
 #include <cstddef>
@@ -21,21 +21,20 @@ struct SeenBlock;
 
 class RootPicture {
  public:
-  /// `request`: its size, background and targets of colours are used. `threads` may be null.
+  /// Uses the request's size, background and colour targets. `threads` may be null.
   RootPicture(const BlockGrid& grid, const raster::FrameRequest& request,
               parallel::Threads* threads);
-  /// Takes opaque surfaces: masks, and the premultiplied colour of each of their pixels.
+  /// Takes opaque surfaces: masks with the premultiplied colours of their pixels.
   void take_behind(Reader from);
-  /// Stores the blended blocks in `mail`, each of which is there once (LayerMerge).
+  /// Stores the blended blocks in `mail`, where each occurs once (LayerMerge).
   void take_seen(const Mail& mail);
-  /// The same for blocks in shared memory.
   void take_seen(SharedLayers layers);
-  /// Stores the blocks that have no layers.
+  /// Stores the blocks without layers.
   void store_rest(SharedLayers layers);
-  /// Stores one block, with its layers or without. Any thread may call these, one for each block.
+  /// Stores one block, with or without layers. Thread-safe for distinct blocks.
   void take_block(const SeenBlock& block);
   void store_behind(std::size_t block);
-  /// Stores the blocks that have not been stored.
+  /// Stores the rest.
   void finish();
 
  private:
@@ -48,7 +47,7 @@ class RootPicture {
   raster::FrameRequest request_;
   raster::FramePlan plan_;
   parallel::Threads* threads_;
-  std::vector<std::uint64_t> masks_;  ///< by block: where something is behind
+  std::vector<std::uint64_t> masks_;  ///< by block: pixels with something behind
   std::vector<std::unique_ptr<raster::BlockColors>> behind_;
   std::vector<std::uint8_t> stored_;
 };

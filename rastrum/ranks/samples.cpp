@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Frames with several samples a pixel. Each sample has a surface and layers of its own, so ranks
-// exchange fragments of samples, opaque ones too; their owner blends each sample and takes the
-// mean. All targets but colours show one surface a pixel: that with the largest key of any sample,
-// which words decide as they do with one sample.
+// Frames with several samples per pixel. Each sample has its own surface and layers, so ranks
+// exchange fragments of samples, opaque ones too. Their owner blends each sample and takes the
+// mean. Targets other than colours show one surface per pixel, that with the largest key of any
+// sample, which words decide as with one sample.
 #include <rastrum/ranks/parts_frame.hpp>
 
 namespace rastrum::ranks {
@@ -33,8 +33,8 @@ void PartsFrame::draw_samples(const Camera& camera) {
   const std::uint32_t of_nearest = asked_ & ~kColorTargets;
   if (of_nearest == 0) return;
   std::optional<OwnImages> images;
-  // All targets of the nearest surfaces, in the rank's own images: where the rank wins, they are
-  // those of the whole scene.
+  // Draws all targets of the nearest surfaces into the rank's own images. Where the rank wins, they
+  // are those of the whole scene.
   phase("draw as opaque", [&] {
     images.emplace(of_nearest & ~kKnownTargets, band_);
     if (own_->parts.empty()) return;
@@ -57,8 +57,8 @@ void PartsFrame::draw_samples(const Camera& camera) {
   send_edges(camera, won.blocks);
 }
 
-/// Tells ranks which fragments they need not send: those behind an opaque surface that some rank
-/// has at all samples of the pixel.
+/// Tells ranks which fragments not to send: those behind an opaque surface that some rank has in
+/// all samples of the pixel.
 void PartsFrame::look_behind_samples() {
   std::optional<Words> words;
   phase("find what hides", [&] {
@@ -71,8 +71,8 @@ void PartsFrame::look_behind_samples() {
   ask_what_hides(words->look(surface_, false));
 }
 
-/// A renderer shades all materials in linear light if any surface of the scene is translucent, seen
-/// or not. On ranks that have none, an empty translucent mesh stands for those of other ranks.
+/// A renderer shades all materials in linear light if any surface of the scene is translucent,
+/// visible or not. An empty translucent mesh stands for those of other ranks.
 void PartsFrame::agree_on_linear_light(const Camera& camera) {
   const bool any =
       frame_.shader == Shader::material && finds_layers(camera, frame_.transparency.method);

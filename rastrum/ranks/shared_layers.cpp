@@ -19,7 +19,7 @@ std::uint64_t numbers_of(std::uint64_t bytes) {
   return (bytes + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t);
 }
 
-/// Calls f(run) for those behind each other from `first` on, which f may change.
+/// Calls f(run) for the list from `first` on; f may change the links.
 template <class F>
 void each_run_from(FragmentRun* first, const F& f) {
   for (FragmentRun *run = first, *next = nullptr; run != nullptr; run = next) {
@@ -28,7 +28,7 @@ void each_run_from(FragmentRun* first, const F& f) {
   }
 }
 
-/// Beside the number of those that are in a picture: the root has gone.
+/// A bit beside the number of visitors: the root has gone.
 constexpr std::uint64_t kClosed = std::uint64_t{1} << 63;
 
 }  // namespace
@@ -78,7 +78,7 @@ void SharedLayers::lay(std::size_t rank, const FragmentBytes& held) const {
     std::uint64_t first = 0;
     std::uint64_t* end = &first;
     each_run_from(runs, [&](FragmentRun& run) {
-      if (run.bytes == 0) return;  // all is hidden
+      if (run.bytes == 0) return;  // all fragments are hidden
       std::uint64_t at = room;
       if (has(run)) {
         at = static_cast<std::uint64_t>(reinterpret_cast<const std::uint64_t*>(&run) -
@@ -109,7 +109,7 @@ SharedLayers::OpenPicture::OpenPicture(SharedLayers layers, RootPicture& picture
   std::atomic_ref<std::uint64_t>(*visitors_).store(0);
 }
 
-// All have gone where the frame has come to its end. Where it has not, a rank may still be in it.
+// After a whole frame all visitors have gone; after a failure some rank may still be drawing.
 SharedLayers::OpenPicture::~OpenPicture() {
   const std::atomic_ref<std::uint64_t> visitors(*visitors_);
   visitors.fetch_or(kClosed);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Layers in memory that ranks of one machine share. All ranks' fragments lie there, in one list for
-// each block. Any rank that is free blends a block. The root then reads the results, or opens its
-// picture there for all to draw into.
+// Layers in memory that ranks of one machine share: all ranks' fragments, in a list per block. Any
+// free rank blends a block. The root reads the results, or opens its picture for all to draw into.
 #pragma once
 
 #include <cstddef>
@@ -15,51 +14,50 @@ namespace rastrum::ranks {
 struct SeenBlock;
 class RootPicture;
 
-/// The memory holds numbers of 64 bits: the table, which has room from the beginning of a frame on,
-/// then the blended layers of each block, then runs of fragments (FragmentRun). The table holds how
-/// much each rank has found no room for, the next block that nobody blends, how much the runs take,
-/// the root's picture and how many draw into it, and where each block's list begins.
+/// 64-bit numbers: the table, each block's blended layers, then runs of fragments (FragmentRun).
+/// The table, which has room from a frame's beginning, holds how much each rank found no room for,
+/// the next block to blend, the size of the runs, the root's picture and its number of visitors,
+/// and where each block's list begins.
 class SharedLayers {
  public:
-  /// `memory`: holds the table and, if large enough, the rest.
+  /// `memory` holds the table and, if large enough, the rest.
   SharedLayers(std::span<std::uint64_t> memory, std::size_t blocks, int ranks)
       : memory_(memory), blocks_(blocks), ranks_(static_cast<std::size_t>(ranks)) {}
   [[nodiscard]] static std::size_t table_size(std::size_t blocks, int ranks) {
     return static_cast<std::size_t>(ranks) + kNumbers + blocks;
   }
 
-  /// Frees all room. One rank does this, between two agreements, while none draws.
+  /// Frees all room. One rank calls it between two agreements, while none draws.
   void clear_room() const { taken() = 0; }
-  /// After the second agreement: memory for runs, or null. All threads of all ranks may call it at
-  /// the same time.
+  /// After the second agreement: memory for runs, or null. Thread-safe over all ranks.
   [[nodiscard]] std::byte* room(std::size_t bytes) const;
-  /// Each rank clears its share of the table, draws, and tells how much has found no room, all
-  /// before an agreement.
+  /// Before an agreement: each rank clears its share of the table, draws, and tells how much found
+  /// no room.
   void clear(std::size_t rank) const;
   void tell(std::size_t rank, const FragmentBytes& held) const;
-  /// After it: the size needed for all, the same on all ranks.
+  /// After that agreement: the size that everything needs, the same on all ranks.
   [[nodiscard]] std::uint64_t size() const;
-  /// Adds the fragments that had found no room, and puts all of the rank's into the lists; all
-  /// ranks may do so at the same time.
+  /// Adds the rank's fragments that found no room, and links all of its fragments into the lists.
+  /// All ranks may do so at once.
   void lay(std::size_t rank, const FragmentBytes& held) const;
-  /// After another agreement: blocks [first, last) that nobody else blends, until first == last.
+  /// After another agreement: blocks [first, last) for this rank alone; first == last at the end.
   struct Run {
     std::size_t first, last;
   };
   [[nodiscard]] Run take() const;
   [[nodiscard]] bool has(std::size_t block) const { return head(block) != 0; }
-  /// Calls f(Reader) for all planes of a block. Planes of one rank come in their order.
+  /// Calls f(Reader) for all planes of a block. Planes of one rank keep their order.
   template <class F>
   void each_run(std::size_t block, const F& f) const {
     for (std::uint64_t at = head(block); at != 0; at = memory_[at])
       f(Reader({reinterpret_cast<const std::byte*>(&memory_[at + 2]), memory_[at + 1]}));
   }
-  /// Stores the blended layers of a block; called by the rank that has taken it.
+  /// Stores a block's blended layers; called by the rank that has taken it.
   void put(const SeenBlock& block) const;
   [[nodiscard]] SeenBlock take_seen(std::size_t block) const;
 
-  /// Opens the root's picture to ranks that are threads of its process. Made before an agreement.
-  /// The destructor waits for ranks that are still drawing into the picture.
+  /// Opens the root's picture to ranks that are threads of its process. Make it before an
+  /// agreement. The destructor waits for ranks that are still drawing.
   class OpenPicture {
    public:
     OpenPicture(SharedLayers layers, RootPicture& picture);
@@ -70,8 +68,8 @@ class SharedLayers {
    private:
     std::uint64_t* visitors_;
   };
-  /// A rank's permission to draw into it, made after the agreement. picture() is null if the root
-  /// has gone.
+  /// A rank's permission to draw into it; make it after that agreement. picture() is null if the
+  /// root has gone.
   class Visit {
    public:
     explicit Visit(SharedLayers layers);
@@ -86,7 +84,7 @@ class SharedLayers {
   };
 
  private:
-  static constexpr std::size_t kNumbers = 4;  ///< of the table beside those of ranks and blocks
+  static constexpr std::size_t kNumbers = 4;  ///< of the table, beside one per rank and per block
   [[nodiscard]] std::uint64_t& next() const { return memory_[ranks_]; }
   [[nodiscard]] std::uint64_t& taken() const { return memory_[ranks_ + 1]; }
   [[nodiscard]] std::uint64_t& picture() const { return memory_[ranks_ + 2]; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// 64 numbers for each block of 8 × 8 pixels that has any: a rank that draws a corner of the picture
-// neither clears nor walks over the rest.
+// 64 numbers for each 8 × 8 block that has any, so that a rank that draws a corner of the picture
+// neither clears nor visits the rest.
 #pragma once
 
 #include <algorithm>
@@ -39,7 +39,7 @@ class SparseBlocks {
   [[nodiscard]] std::uint64_t mask(std::size_t block) const { return masks_[block]; }
   /// The block's 64 numbers, 0 outside its mask. The mask must not be empty.
   [[nodiscard]] const std::uint64_t* of(std::size_t block) const { return values_[block]->data(); }
-  /// The number of a pixel, 0 for none.
+  /// A pixel's number; 0 for none.
   [[nodiscard]] std::uint64_t at(std::size_t block, int i) const {
     return masks_[block] == 0 ? 0 : of(block)[i];
   }
@@ -50,7 +50,7 @@ class SparseBlocks {
     masks_[block] = mask;
     for (std::size_t i = 0; i < kPixels; ++i) (*own)[i] = (mask >> i & 1) != 0 ? values[i] : 0;
   }
-  /// Keeps the greater numbers. `values`: one for each pixel of the mask, 8 B each.
+  /// Keeps the greater numbers. `values`: 8 bytes per pixel of the mask.
   void raise(BlockMask b, std::span<const std::byte> values) {
     auto& own = values_[b.block];
     if (!own) own = std::make_unique<std::array<std::uint64_t, kPixels>>();
@@ -66,7 +66,6 @@ class SparseBlocks {
   [[nodiscard]] bool any() const {
     return std::ranges::any_of(masks_, [](std::uint64_t m) { return m != 0; });
   }
-  /// How many pixels have a number.
   [[nodiscard]] std::uint64_t pixels() const {
     std::uint64_t n = 0;
     for (const std::uint64_t m : masks_) n += static_cast<unsigned>(std::popcount(m));

@@ -65,8 +65,8 @@ void Words::take(const Mail& mail, std::size_t rank, std::vector<std::uint64_t>&
     }
 }
 
-/// Along its row each rank sends what goes to a column; who gets that keeps the greatest of its row
-/// and sends these along the column.
+/// Each rank sends along its row what goes to a column; the receiver keeps the greatest words of
+/// its row and sends them along the column.
 void Words::meet_by_hops(Communicator& ranks, const AtPhase& at,
                          std::vector<std::uint64_t>& own) const {
   const auto me = static_cast<std::size_t>(ranks.rank());
@@ -107,7 +107,7 @@ void Words::clear_own(const BlockGrid& grid, std::size_t rank, std::span<std::ui
 }
 
 void Words::raise(std::span<std::uint64_t> surface) const {
-  // Between processes, too: without a lock there is nothing that one of them could die with.
+  // Must hold between processes too: one that dies holds no lock.
   static_assert(std::atomic_ref<std::uint64_t>::is_always_lock_free);
   for (std::size_t b = 0; b < words_.count(); ++b) {
     const std::uint64_t mask = words_.mask(b);

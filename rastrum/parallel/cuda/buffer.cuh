@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Memory of the device: what words allocate and return there, and the ways across.
+// Memory of a device for words, and the copies to and from it.
 #pragma once
 
 #include <cassert>
@@ -14,8 +14,8 @@
 
 namespace rastrum::parallel {
 
-/// n elements on the device, uninitialized, in the memory of a Cuda context, which they may
-/// outlive. The host sees where they lie and not what they are: to_host copies them.
+/// n uninitialized elements on the device, in the memory of a Cuda context, which they may outlive.
+/// The host cannot read them: to_host copies them.
 template <class T>
 class DeviceBuffer {
   static_assert(std::is_trivially_copy_constructible_v<T> && std::is_trivially_destructible_v<T>);
@@ -45,7 +45,7 @@ class DeviceBuffer {
   [[nodiscard]] RASTRUM_HD T* data() noexcept { return data_; }
   [[nodiscard]] RASTRUM_HD const T* data() const noexcept { return data_; }
   [[nodiscard]] RASTRUM_HD std::size_t size() const noexcept { return size_; }
-  /// For the device alone; kernels take view_of(buffer), which has it too.
+  /// On the device only; kernels take view_of(buffer).
   [[nodiscard]] RASTRUM_HD T& operator[](std::size_t i) noexcept { return data_[i]; }
   [[nodiscard]] RASTRUM_HD const T& operator[](std::size_t i) const noexcept { return data_[i]; }
 
@@ -62,14 +62,14 @@ template <class T>
   return buffer;
 }
 
-/// `n` uninitialized bytes of the host to which the device copies without waiting. To be kept until
-/// the stream was waited for.
+/// `n` uninitialized bytes of host memory to which the device copies without waiting. Keep them
+/// until the stream was waited for.
 [[nodiscard]] inline Buffer<std::byte> pinned_buffer(const Cuda& exec, std::size_t n) {
   return Buffer<std::byte>(n, ArenaAllocator<std::byte>(exec.pinned()));
 }
 
-/// A copy of `source`, contiguous memory of the host, by way of another that the context keeps: for
-/// small arrays, which may go at once. Does not wait.
+/// Copies `source`, contiguous host memory, without waiting. The context keeps a copy meanwhile:
+/// for small arrays.
 template <class R>
 [[nodiscard]] auto upload(Cuda& exec, const R& source) {
   using T = std::remove_cvref_t<decltype(*std::data(source))>;
@@ -80,7 +80,7 @@ template <class R>
   cuda_system::copy(exec.stream(), out.data(), staged->data(), out.size() * sizeof(T));
   return out;
 }
-/// A copy of `source`, contiguous memory of the host. Waits.
+/// Copies `source`, contiguous host memory. Waits.
 template <class R>
 [[nodiscard]] auto to_device(Cuda& exec, const R& source) {
   auto out =
@@ -90,7 +90,7 @@ template <class R>
   exec.wait();
   return out;
 }
-/// A copy of contiguous memory of the device. Waits.
+/// Copies contiguous device memory. Waits.
 template <class R>
 [[nodiscard]] auto to_host(Cuda& exec, const R& source) {
   std::vector<std::remove_cvref_t<decltype(*std::data(source))>> out(std::size(source));
@@ -100,13 +100,13 @@ template <class R>
   return out;
 }
 
-/// Rows of `width` pixels, dense on the device and `stride` pixels apart on the host (from the
-/// bottom up where it is negative), to one or the other. Does not wait.
+/// Copies rows of `width` pixels either way, without waiting. They are dense on the device and
+/// `stride` pixels apart on the host (negative: from the bottom up).
 template <class T>
 void copy_image(Cuda& exec, T* on_device, std::size_t width, T* on_host, std::ptrdiff_t stride,
                 std::size_t rows, bool to_device) {
   const std::size_t bytes = width * sizeof(T);
-  if (stride == static_cast<std::ptrdiff_t>(width)) {  // one piece of memory
+  if (stride == static_cast<std::ptrdiff_t>(width)) {  // contiguous on the host too
     T* const to = to_device ? on_device : on_host;
     const T* const from = to_device ? on_host : on_device;
     return cuda_system::copy(exec.stream(), to, from, rows * bytes);
@@ -123,14 +123,14 @@ void copy_image(Cuda& exec, T* on_device, std::size_t width, T* on_host, std::pt
     once(on_device + y * width, on_host + static_cast<std::ptrdiff_t>(y) * stride, bytes, 1);
 }
 
-/// A number that the device has yet to find. Asking for it waits.
+/// A number that the device is computing. get() waits.
 template <class T>
 class Pending {
  public:
   Pending(Cuda& exec, DeviceBuffer<T> cell) : exec_(&exec), cell_(std::move(cell)) {}
   [[nodiscard]] T get() const { return to_host(*exec_, cell_)[0]; }
   operator T() const { return get(); }
-  /// Where it will be on the device.
+  /// Its address on the device.
   [[nodiscard]] const T* device() const { return cell_.data(); }
   friend bool operator==(const Pending& a, const T& b) { return a.get() == b; }
 
@@ -139,7 +139,7 @@ class Pending {
   DeviceBuffer<T> cell_;
 };
 
-/// A range as kernels take it. A container that owns host memory is refused, except on the CPU.
+/// A range in the form that kernels take. Refuses containers of host memory, except on the CPU.
 template <class R>
 [[nodiscard]] auto device_view(R&& range) {
   using View = view_t<R>;

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// reduce_by_key and segmented_scan on a device; see reduce_by_key.hpp and segmented.hpp for what
-// they compute.
+// reduce_by_key and segmented_scan on a device; definitions in reduce_by_key.hpp and segmented.hpp.
 //
-// Where any order (or grouping, for the scan) gives the same bits by Thrust, a segment being known
-// by its number, which is found by binary search: work O(n · log segments), span O(log n). Else the
-// CPU's passes, with a thread a block of kBlock elements, and the same bits. reduce_by_key waits
-// for the number of runs.
+// Thrust computes them where any order (for the scan, any grouping) gives the same bits; a binary
+// search finds each element's segment: work O(n · log segments), span O(log n). Otherwise the CPU's
+// passes run, a thread per block of kBlock elements. reduce_by_key waits for the number of runs.
 #pragma once
 
 #include <cassert>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Counts what this thread's frames ask of a device, since the counters were last read. A wait costs
-// some 20 µs of a frame, a launch a few, so tests hold both (cuda_rasterizer_test).
+// Counts what this thread's frames ask of a device. A wait costs some 20 µs, a launch a few, so
+// tests limit both (cuda_rasterizer_test).
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,12 @@
 namespace rastrum::parallel::cuda_system {
 
 struct DeviceTally {
-  std::uint64_t launches = 0;    ///< kernels of our own
-  std::uint64_t algorithms = 0;  ///< of Thrust and CUB, each some kernels, some with a wait
+  std::uint64_t launches = 0;    ///< our own kernels
+  std::uint64_t algorithms = 0;  ///< of Thrust and CUB; each starts several kernels and may wait
   std::uint64_t copies = 0;
   std::uint64_t copied_bytes = 0;
-  std::uint64_t waits = 0;   ///< of the host, for a stream
-  std::uint64_t blocks = 0;  ///< of memory that the driver was asked for
+  std::uint64_t waits = 0;   ///< of the host for a stream
+  std::uint64_t blocks = 0;  ///< of memory, asked of the driver
 
   friend DeviceTally operator-(const DeviceTally& a, const DeviceTally& b) {
     return {a.launches - b.launches,         a.algorithms - b.algorithms, a.copies - b.copies,

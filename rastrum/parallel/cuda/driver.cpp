@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Asks the CUDA runtime for a device. The runtime is linked statically and looks for the driver
-// when it is called, so the library of device code can be opened on machines that have none.
+// The CUDA runtime is linked statically and looks for the driver when called, so the library of
+// device code opens on machines without one.
 #include <rastrum/parallel/cuda/driver.hpp>
 
 #include <cuda_runtime_api.h>

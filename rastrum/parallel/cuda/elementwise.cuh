@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// for_each, tabulate, transform, scatter, scatter_if and transpose on a device: a thread an
-// element. Definitions are those of the words of the same names on the CPU.
+// for_each, tabulate, transform, scatter, scatter_if and transpose on a device, a thread per
+// element. Definitions as on the CPU.
 //
 // Work O(n), span O(1). Allocate nothing, do not wait.
 #pragma once
@@ -73,7 +73,7 @@ void tabulate(Cuda& exec, Out&& out, F&& f) {
                  cuda_detail::Assign<decltype(view), std::decay_t<F>>{view, f});
 }
 
-/// Zeros in all of `buffer`, as memory has them: faster than by a thread an element.
+/// Zeros all bytes of `buffer`, faster than a thread per element does.
 template <class T>
 void clear(Cuda& exec, DeviceBuffer<T>& buffer) {
   static_assert(std::is_integral_v<T>);
@@ -106,7 +106,7 @@ void scatter(Cuda& exec, const In& in, const Map& map, Out&& out) {
   scatter_if(exec, in, map, constant(std::size(in), true), out);
 }
 
-/// Writes in order; what it reads lies apart, and meets in the cache.
+/// Writes in order; the scattered reads share cache lines.
 template <Readable In, Writable Out>
 void transpose(Cuda& exec, const In& in, std::size_t rows, std::size_t columns, Out&& out) {
   assert(std::size(in) == rows * columns && std::size(out) == rows * columns);

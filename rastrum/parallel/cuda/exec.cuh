@@ -1,23 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The execution context of a CUDA device: a stream, and memory that is pooled for it.
+// The execution context of a CUDA device: a stream and its memory pool.
 //
-// Words are overloads on Cuda of those in rastrum/parallel, with the same names and arguments.
-// - What they read and write is memory of the device: DeviceBuffer, std::span over device pointers,
-//   or anything small with a size and an operator[] that the device can call (range.hpp). Views are
-//   copied into kernels. Nothing is moved between host and device but where it is asked for.
-// - Functors carry RASTRUM_HD, are copied, and may refer to memory of the device only. Give them
-//   names: nvcc takes no lambda of a host function.
-// - Work goes to the stream in order. A word that returns a number waits for it; a sum that a scan
-//   returns waits when it is asked for (Pending); the others return at once.
-// - Memory comes from an arena that keeps all blocks until trim(), so that a frame like the one
-//   before allocates nothing. A block that was given back is used again by later work of the same
-//   stream alone, so no one waits.
-// - The results are the CPU's, bit for bit. Where the order of operands could change a bit (floats,
-//   functions of the caller's) they are folded in the same cut as there, by a thread a block of
-//   kBlock; else by Thrust's trees (kAnyOrder).
+// Each word of rastrum/parallel has an overload on Cuda with the same name and arguments.
+// - Words read and write device memory: DeviceBuffer, std::span over device pointers, or anything
+//   small with a size and an operator[] that the device can call (range.hpp). Only explicit copies
+//   move data between host and device.
+// - Functors carry RASTRUM_HD, are copied, and refer to device memory only. They are named types,
+//   because nvcc takes no lambda of a host function.
+// - Work goes to the stream in order. A word that returns a number waits for it; the sum of a scan
+//   waits when it is read (Pending); the others return at once.
+// - An arena keeps all blocks until trim(), so that a similar frame allocates nothing. Returned
+//   blocks serve only later work of the same stream, so nothing waits.
+// - The results are the CPU's, bit for bit. If the order of operands could change a bit (floats,
+//   callers' functions), a thread folds each block of kBlock as the CPU does; otherwise Thrust's
+//   trees do (kAnyOrder).
 //
-// For translation units of nvcc; or of a C++ compiler, on the CPU (system.cuh). Sources: CCCL
-// (Thrust, CUB); docs/decisions/0014.
+// For nvcc, or for a C++ compiler on the CPU (system.cuh). Sources: CCCL (Thrust, CUB);
+// docs/decisions/0014.
 #pragma once
 
 #include <cstddef>
@@ -35,16 +34,16 @@ inline namespace RASTRUM_DEVICE_SYSTEM {
 
 class Cuda {
  public:
-  /// A stream of its own on the current device. Memory that words take is accounted to `account`,
-  /// which must outlive the context and the words' results. Throws Error{no_device}; whether there
-  /// is a device says cuda_status() (status.hpp).
+  /// Makes a stream on the current device. `account` counts the words' memory; it must outlive the
+  /// context and the words' results. Throws Error{no_device}; ask cuda_status() (status.hpp)
+  /// before.
   explicit Cuda(MemoryAccount* account = nullptr)
       : owned_(true),
         device_(cuda_system::current_device()),
         stream_(cuda_system::make_stream()),
         memory_(make_arena(account, cuda_system::memory_source())),
         pinned_(make_arena(nullptr, cuda_system::pinned_source())) {}
-  /// On a stream of the caller's, of the current device, which must outlive it and its results.
+  /// Uses the caller's stream on the current device. It must outlive the context and its results.
   explicit Cuda(cuda_system::Stream stream, MemoryAccount* account = nullptr)
       : owned_(false),
         device_(cuda_system::current_device()),
@@ -58,35 +57,33 @@ class Cuda {
   Cuda& operator=(const Cuda&) = delete;
 
   [[nodiscard]] const std::shared_ptr<Arena>& memory() const { return memory_; }
-  /// Host memory into which copies from the device go without waiting (pinned_buffer). Not
-  /// accounted: it is as large as the memory that the caller must have for the result anyway.
+  /// Host memory to which the device copies without waiting (pinned_buffer). Not accounted: it is
+  /// no larger than the caller's memory for the result.
   [[nodiscard]] const std::shared_ptr<Arena>& pinned() const { return pinned_; }
   [[nodiscard]] cuda_system::Stream stream() const { return stream_; }
-  /// The device that was current where the context was made. It must be current where words are
-  /// called: on_device_of().
+  /// The device that was current when the context was made. Words need it current: on_device_of().
   [[nodiscard]] int device() const { return device_; }
-  /// Waits until all work that was given to the stream is done. Throws Error{no_device} for what
-  /// went wrong there.
+  /// Waits until all work of the stream is done. Throws Error{no_device} if that failed.
   void wait() const {
     cuda_system::wait(stream_);
     staged_.clear();
   }
-  /// The same after an error: the stream no longer reads or writes memory that the host frees.
+  /// The same after an error, so that the stream no longer uses memory that the host frees.
   void settle() const noexcept {
     try {
       wait();
     } catch (...) {
-      // The error is known already, and a device that failed does nothing more.
+      // The error is already known, and a failed device does nothing more.
     }
   }
   /// Keeps `source` until the stream was waited for.
   void keep(std::shared_ptr<const void> source) { staged_.push_back(std::move(source)); }
 
-  /// Thrust's, for algorithms beside the words: does not wait, and takes its scratch from memory().
+  /// Thrust's policy, for algorithms beside the words. Does not wait; scratch comes from memory().
   [[nodiscard]] auto policy() { return cuda_system::policy(scratch_, stream_); }
 
  private:
-  /// As Thrust wants it.
+  /// An allocator for Thrust.
   struct Scratch {
     using value_type = char;
     Arena* arena;
@@ -109,8 +106,8 @@ class Cuda {
 
 }  // namespace RASTRUM_DEVICE_SYSTEM
 
-/// f() where the context's device is current, whatever is current for the caller; all that fails is
-/// an Error. Around what others call of the device's code.
+/// Returns f() with the context's device current; every failure is an Error. For entry points of
+/// device code.
 template <class F>
 decltype(auto) on_device_of(const Cuda& exec, F&& f) {
   const cuda_system::DeviceScope scope(exec.device());
@@ -128,28 +125,26 @@ void for_each_index(Cuda& exec, std::size_t n, F f) {
   cuda_system::launch_indices(exec.stream(), n, f);
 }
 
-/// Calls f(i, local) for i in [0, n), by as many threads as the device holds at once, each of which
-/// has a Local of its own, empty at first, and at last calls f.end(local): for sums, which then go
-/// to memory once a thread. `n` may lie on the device. Work O(n).
+/// Calls f(i, local) for i in [0, n) on as many threads as the device holds at once. Each has its
+/// own Local{}, and calls f.end(local) last: for sums that go to memory once per thread. `n` may
+/// lie on the device. Work O(n).
 template <class Local, class F>
 void for_each_strided(Cuda& exec, LoopCount n, F f) {
   cuda_system::launch_strided<Local>(exec.stream(), n, f);
 }
 
-/// Calls f(i, local, T& scratch, team) as for_each_team, by as many teams as the device holds at
-/// once, each member with a Local of its own as for_each_strided has them.
+/// Calls f(i, local, T& scratch, team) as for_each_team does, on as many teams as the device holds
+/// at once. Each member has its own Local as in for_each_strided.
 template <class Local, class T, int kThreads = 32, class F>
 void for_each_team_strided(Cuda& exec, LoopCount n, const F& f) {
   static_assert(std::is_trivially_default_constructible_v<T>);
   cuda_system::launch_strided_teams<Local, T, kThreads>(exec.stream(), n, f);
 }
 
-/// Calls f(i, T& scratch, team) for i in [0, n) by all members of a team together: a block of
-/// kThreads threads, with `scratch` in shared memory, uninitialized and theirs alone. A member has
-/// team.rank() < team.size() and meets the others at team.sync(), which all must reach. A body is
-/// right for any size of team: shares of work are strides of it. kResident: teams that a
-/// multiprocessor is to hold at least, which leaves a thread fewer registers; 0: as the compiler
-/// likes.
+/// Calls f(i, T& scratch, team) for i in [0, n) on a team: a block of kThreads threads that share
+/// `scratch`, uninitialized, in shared memory. All members must reach each team.sync(). A body must
+/// be right for any team.size(): members take strides of the work. kResident: the fewest teams that
+/// a multiprocessor holds, which limits registers; 0: the compiler's choice.
 template <class T, int kThreads = 128, int kResident = 0, class F>
 void for_each_team(Cuda& exec, LoopCount n, F&& f) {
   static_assert(std::is_trivially_default_constructible_v<T>);

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// expand, expand_masked and their walks on a device; see expand_each.hpp and
-// masked_expansion.hpp for what they compute, whose code this is: a thread takes a chunk.
+// expand, expand_masked and their walks on a device. They run the code of expand_each.hpp and
+// masked_expansion.hpp, a thread per chunk.
 //
-// So where the caller does not say how large a chunk is, it is one result, which its thread finds
-// by binary search (of neighbours the same way, in the cache), and neighbours write side by side. A
-// thread asks the predicates of one mask.
+// By default a chunk is one result, found by binary search, so that neighbouring threads write
+// neighbouring results. Each thread asks the predicates of one mask.
 //
-// Work O((n + total) log n), span O(per_chunk + log n). Allocate as on the CPU, and 8 bytes a mask.
-// Expansions wait for their size.
+// Work O((n + total) log n), span O(per_chunk + log n). Allocates as on the CPU, and 8 bytes per
+// mask. Expansions wait for their size.
 #pragma once
 
 #include <cassert>
@@ -49,7 +48,6 @@ struct CallWithEach {
     chunk.each([&](const auto& element, std::size_t j) { f(c, element, j); });
   }
 };
-/// Writes the results of a chunk.
 template <class Get, class T>
 struct WriteEach {
   Get get;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A device's stream on the CPU, for the tests: it does late what a GPU does late, and fails on
-// request where a driver may.
+// A device's stream on the CPU, for tests: it can work late as a GPU does, and fail on request
+// where a driver may.
 #pragma once
 
 #include <algorithm>
@@ -14,13 +14,13 @@
 
 namespace rastrum::parallel::cuda_system {
 
-/// Which call of a device fails, of those that a driver may refuse: memory, copies, launches,
-/// waits, Thrust's algorithms. Counted for each thread.
+/// Makes one call of a device fail, among those that a driver may refuse: memory, copies, launches,
+/// waits, Thrust's algorithms. Counted per thread.
 struct DeviceFaults {
   std::uint64_t calls = 0;
   std::uint64_t fails_at = 0;  ///< 0: none
 
-  /// Whether this call is the one.
+  /// Counts a call; true if this is the one that fails.
   [[nodiscard]] static bool strikes() {
     DeviceFaults& faults = of_thread();
     return ++faults.calls == faults.fails_at;
@@ -31,11 +31,11 @@ struct DeviceFaults {
   }
 };
 
-/// Work in order. Where streams are late it is done when the host waits for it and no sooner, so
-/// that a result which is read too early, or a source that is gone too soon, is wrong at every run.
+/// Work in order. A late stream works only when the host waits, so that a result read too early or
+/// a source freed too soon is wrong in every run.
 class HostStream {
  public:
-  /// Holds for all streams from here on; not to be called while one has work.
+  /// For all streams; must not be called while one has work.
   static void be_late(bool late) { late_ = late; }
 
   HostStream() {
@@ -62,12 +62,12 @@ class HostStream {
     for (const auto& work : work_) work();
     work_.clear();
   }
-  /// A device that has failed does nothing of what waits.
+  /// A failed device does nothing of what is pending.
   void drop() {
     const std::lock_guard lock(mutex_);
     work_.clear();
   }
-  /// Giving memory back waits for all of a device's work.
+  /// Freeing memory waits for all work of the device.
   static void run_all() {
     const std::lock_guard lock(all_mutex_);
     for (HostStream* const stream : all_) stream->run();

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Walls between the two memories where the CPU stands for a device, for the tests under the address
-// sanitizer: the device's blocks are poisoned but while kernels, copies and algorithms run, and the
-// host's heap is while kernels do. So host code that reads what lies on the device, and a functor
-// that refers to memory of the host, are reported where they do it, as use of poisoned memory.
-// Without that sanitizer, clang's, nothing stands.
+// Separates host and device memory where the CPU stands in for a device, under clang's address
+// sanitizer. The device's blocks are poisoned except while kernels, copies and algorithms run; the
+// host's heap is poisoned while kernels run. So host code that reads device memory, and functors
+// that refer to host memory, are reported. Without that sanitizer this does nothing.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +14,7 @@
 #define RASTRUM_ADDRESS_SANITIZER 1
 #endif
 #endif
-// clang's: GCC comes without the header of the hooks.
+// clang only: GCC lacks the header of the hooks.
 #if defined(RASTRUM_ADDRESS_SANITIZER) && __has_include(<sanitizer/allocator_interface.h>)
 #define RASTRUM_WALLS 1
 #endif
@@ -36,8 +35,8 @@ class Walls {
  public:
   static constexpr bool kCanStand = true;
 
-  /// From here on, for what is allocated from here on: for programs that keep the two apart, and
-  /// whose other threads rest while a kernel runs.
+  /// Turns the separation on for later allocations. The program must keep both memories apart, and
+  /// its other threads must rest while a kernel runs.
   static void stand() {
     State& s = state();
     const std::lock_guard lock(s.mutex);
@@ -45,8 +44,8 @@ class Walls {
     s.stand = true;
     __sanitizer_install_malloc_and_free_hooks(on_malloc, on_free);
   }
-  /// While one lives, allocations are not noted as the host's: those of this class itself, and
-  /// stacks of kernels.
+  /// While one lives, allocations do not count as the host's: those of this class, and stacks of
+  /// kernels.
   struct Unseen {
     Unseen() { ++depth(); }
     ~Unseen() { --depth(); }
@@ -57,7 +56,7 @@ class Walls {
       return depth;
     }
   };
-  /// A block becomes the device's, or the heap's again.
+  /// Marks a block as the device's (add) or as the heap's again (remove).
   static void add(void* block, std::size_t bytes) {
     State& s = state();
     const Unseen unseen;
@@ -77,8 +76,8 @@ class Walls {
     s.device.erase(at);
   }
 
-  /// While one lives, the device's memory is open: for copies, and for algorithms, which take their
-  /// scratch from the host's arena.
+  /// While one lives, device memory is accessible: for copies, and for algorithms, whose scratch
+  /// comes from the host's arena.
   class Device {
    public:
     Device() { enter(); }
@@ -99,8 +98,7 @@ class Walls {
       for (const auto& [block, bytes] : s.device) ASAN_UNPOISON_MEMORY_REGION(block, bytes);
     }
   };
-  /// While one lives, the host's heap is closed as well, but for blocks of less than kLeast and
-  /// what is allocated meanwhile.
+  /// While one lives, the host's heap is poisoned too, except blocks below kLeast and new ones.
   class Kernel {
    public:
     Kernel() {
@@ -123,7 +121,7 @@ class Walls {
   };
 
  private:
-  /// Smaller ones are too many.
+  /// There are too many smaller blocks.
   static constexpr std::size_t kLeast = 256;
   struct State {
     std::mutex mutex;
@@ -131,7 +129,7 @@ class Walls {
     int inside = 0, in_kernels = 0;
     std::unordered_map<void*, std::size_t> device, host;
   };
-  /// Never destroyed: the hooks outlive all else.
+  /// Never destroyed, because the hooks outlive everything else.
   static State& state() {
     static State* const state = new State;
     return *state;
@@ -161,7 +159,7 @@ struct Walls {
   static void add(void*, std::size_t) {}
   static void remove(void*) noexcept {}
   struct Unseen {
-    Unseen() {}  // so that no one of these is an unused variable
+    Unseen() {}  // avoids warnings about unused variables
   };
   struct Device {
     Device() {}

@@ -9,7 +9,7 @@
 namespace rastrum::parallel {
 namespace {
 
-/// The library that is used instead of the file (set_cuda_library).
+/// Replaces the file (set_cuda_library).
 const CudaLibrary* in_its_place = nullptr;
 
 const OpenedCudaLibrary& opened() {
@@ -22,7 +22,7 @@ const OpenedCudaLibrary& opened() {
 }  // namespace
 
 OpenedCudaLibrary open_cuda_library(const char* file) {
-  // Its names are its own (RTLD_LOCAL), and none of them is looked for later (RTLD_NOW).
+  // Its names stay local (RTLD_LOCAL), and all are resolved now (RTLD_NOW).
   void* const handle = ::dlopen(file, RTLD_NOW | RTLD_LOCAL);
   if (handle == nullptr)
     return {nullptr, text_of("the library of device code cannot be opened: ", ::dlerror(),

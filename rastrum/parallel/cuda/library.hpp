@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The library of device code, librastrum_cuda.so: all that nvcc compiles of Rastrum, in a file of
-// its own that is opened when somebody asks for a CUDA device. So nobody else carries it, needs a
-// toolkit to link, or notices that there is none. Decision 0026.
+// The library of device code, librastrum_cuda.so: all of Rastrum that nvcc compiles. It is opened
+// when a CUDA device is asked for, so programs without CUDA neither carry it nor need a toolkit to
+// link. Decision 0026.
 //
-// Each floor has a table of what it asks of a device; their types are the floors' own. The library
-// has a copy of what it calls of Rastrum::rastrum, to itself: what it is to share with its caller
-// (memory accounts, threads, the token that stops a frame) is passed.
+// Each floor of Rastrum (docs/architecture.md) has a table of what it calls on a device, of its own
+// type. The library has its own copy of the code of Rastrum::rastrum that it calls, so shared state
+// (memory accounts, threads, the stop token) is passed in.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +25,8 @@ namespace rastrum::parallel {
 
 struct CudaLibrary;
 
-/// A table of code that Rastrum does not know, which is compiled into the library beside it: a
-/// static object adds itself, its user finds it by its name and knows its type.
+/// A table of code that is compiled into the library but unknown to Rastrum. A static object
+/// registers itself; its user finds it by name and knows its type.
 class AddedTable {
  public:
   AddedTable(const char* name, const void* table) : name_(name), table_(table), next_(first()) {
@@ -35,7 +35,7 @@ class AddedTable {
   AddedTable(const AddedTable&) = delete;
   AddedTable& operator=(const AddedTable&) = delete;
 
-  /// The last one that was added.
+  /// The one added last.
   static const AddedTable*& first() {
     static const AddedTable* first = nullptr;
     return first;
@@ -50,39 +50,38 @@ class AddedTable {
 };
 
 struct CudaLibrary {
-  /// The program's own (RASTRUM_CUDA_LIBRARY_VERSION, which changes with every header), or nothing
-  /// else here may be read. First, in all versions.
+  /// Must equal the program's RASTRUM_CUDA_LIBRARY_VERSION, which changes with every header;
+  /// otherwise nothing else here may be read. Comes first in all versions.
   const char* version;
-  CudaStatus (*status)();  ///< what cuda_status() says
+  CudaStatus (*status)();  ///< what cuda_status() returns
   const CudaRendering* rendering;
   const terrain::CudaTerrain* terrain;
   const AddedTable* added;  ///< the first one
 };
 
-/// The file, which the dynamic loader looks for by its own rules: in the program's RUNPATH, in
-/// LD_LIBRARY_PATH, and where it looks for all libraries. A program that links Rastrum's CMake
-/// targets has the right RUNPATH.
+/// The dynamic loader finds the file by its rules: RUNPATH, LD_LIBRARY_PATH, system folders.
+/// Programs that link Rastrum's CMake targets have the right RUNPATH.
 inline constexpr const char* kCudaLibraryFile = "librastrum_cuda.so";
 /// The function that the file exports: `const CudaLibrary* rastrum_cuda_library()`.
 inline constexpr const char* kCudaLibrarySymbol = "rastrum_cuda_library";
 
-/// A library, or why there is none, as the end of a sentence.
+/// A library, or as the end of a sentence why there is none.
 struct OpenedCudaLibrary {
   const CudaLibrary* library = nullptr;
   std::string why_not;
 };
-/// Opens a file of that name; it stays open. Refuses one of another version.
+/// Opens a file of that name, for good. Refuses one of another version.
 [[nodiscard]] OpenedCudaLibrary open_cuda_library(const char* file);
 
-/// kCudaLibraryFile, opened by the first call, from any thread. Throws Error{no_device} where there
-/// is none; choose_device has said so before.
+/// kCudaLibraryFile, opened by the first call; thread-safe. Throws Error{no_device} if there is
+/// none, which choose_device reports beforehand.
 [[nodiscard]] const CudaLibrary& cuda_library();
 
-/// The table of that name in the library; throws Error{no_device} where it has none.
+/// The library's table of that name; throws Error{no_device} if it has none.
 [[nodiscard]] const void* added_table(const CudaLibrary& library, std::string_view name);
 
-/// Takes `library` in the place of the file, before anybody asked for it: for a program that links
-/// the code of devices, such as tests that have it compiled for the CPU.
+/// Uses `library` instead of the file; call it before anything asks for one. For programs that link
+/// device code, such as tests on the CPU.
 void set_cuda_library(const CudaLibrary& library);
 
 }  // namespace rastrum::parallel

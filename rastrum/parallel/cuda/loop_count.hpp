@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How often a device's loop runs: so often as the host says, or as a counter on the device does
-// when the loop begins, so that the host need not wait to know it.
+// The length of a device's loop: a number from the host, or a counter on the device that is read
+// when the loop begins, so that the host need not wait for it.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@
 namespace rastrum::parallel {
 
 struct LoopCount {
-  std::size_t most = 0;                  ///< never more, whatever the counter says
-  const std::uint64_t* count = nullptr;  ///< of the device; null: `most`
+  std::size_t most = 0;                  ///< the limit, whatever the counter says
+  const std::uint64_t* count = nullptr;  ///< on the device; null: `most`
 
   LoopCount(std::size_t n) : most(n) {}  // NOLINT(google-explicit-constructor): a number is one
   LoopCount(std::size_t room, const std::uint64_t* on_device) : most(room), count(on_device) {}

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which folds may be cut anywhere: those whose result is the same bits however the operands are
-// grouped and, but for scans, in whatever order they come. All others keep the CPU's cut
-// (reduce.hpp).
+// Which folds may be cut anywhere: those with the same bits for any grouping and, except in scans,
+// any order of the operands. All others keep the CPU's cut (reduce.hpp).
 #pragma once
 
 #include <concepts>
@@ -11,8 +10,7 @@
 
 namespace rastrum::parallel {
 
-/// Whether operands may come in any order. Specialize it for an associative and commutative
-/// function of yours.
+/// Whether operands may come in any order. Specialize it for associative and commutative functions.
 template <class T, class Op>
 inline constexpr bool kAnyOrder = false;
 template <std::integral T>
@@ -24,8 +22,8 @@ inline constexpr bool kAnyOrder<T, std::bit_or<>> = true;
 template <std::integral T>
 inline constexpr bool kAnyOrder<T, Maximum> = true;
 
-/// Whether operands may be grouped in any way, in their order: enough for a scan. Specialize it for
-/// an associative function.
+/// Whether operands may be grouped in any way, in their order, which suffices for a scan.
+/// Specialize it for associative functions.
 template <class T, class Op>
 inline constexpr bool kAnyGrouping = kAnyOrder<T, Op>;
 

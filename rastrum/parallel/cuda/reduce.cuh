@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// reduce, exclusive_scan and inclusive_scan on a device; see reduce.hpp and scan.hpp for what they
-// compute.
+// reduce, exclusive_scan and inclusive_scan on a device; definitions in reduce.hpp and scan.hpp.
 //
-// Where any order gives the same bits (kAnyOrder) by CUB through Thrust: work O(n), span O(log n).
-// Else a thread folds a block of kBlock elements and one thread the blocks' results: span O(kBlock
-// + n / kBlock), the same bits as on the CPU. Allocate CUB's scratch, or one T a block; a scan one
-// T for its sum. reduce waits.
+// CUB computes them through Thrust where any order gives the same bits (kAnyOrder): work O(n), span
+// O(log n). Otherwise a thread folds each block of kBlock elements, and one thread the blocks'
+// results: span O(kBlock + n / kBlock), the CPU's bits. Allocates CUB's scratch or one T per block,
+// and a scan's sum. reduce waits.
 #pragma once
 
 #include <cassert>
@@ -47,7 +46,7 @@ template <class T>
   return view.data();
 }
 
-/// The elements converted to T, the first one behind `initial`: Thrust's inclusive scan takes no
+/// The elements as T, with `initial` folded into the first: Thrust's inclusive scan takes no
 /// initial value before CUDA 12.8.
 template <class T, class View, class Op>
 struct ReadBehind {
@@ -72,7 +71,7 @@ struct FoldBlock {
   }
 };
 
-/// The blocks' results in order, each replaced by what comes before it. By one thread.
+/// Replaces each block's result by the fold of all before it. Runs on one thread.
 template <class T, class Op>
 struct FoldPartials {
   std::span<T> partial;
@@ -104,7 +103,8 @@ struct ScanBlock {
   }
 };
 
-/// *total: before the scan what its sum lacks (`out` may be `in`), and behind it the sum.
+/// An exclusive scan's result lacks the last element of `in`. `out` may be `in`, so KeepLast saves
+/// that element to *total before the scan, and AddLast adds the result's last to it.
 template <class T, class In>
 struct KeepLast {
   In in;
@@ -124,7 +124,7 @@ struct AddLast {
   }
 };
 
-/// Folds the blocks of `in`; returns what comes before each, and puts the sum of all to *total.
+/// Folds the blocks of `in`. Returns the fold of all before each block; *total becomes that of all.
 template <class T, class In, class Op>
 [[nodiscard]] DeviceBuffer<T> fold_blocks(Cuda& exec, In in, T initial, Op op, T* total) {
   const std::size_t n = std::size(in);
@@ -175,7 +175,7 @@ template <Readable In, class T, class Op = std::plus<>>
   }
 }
 
-/// `out` is contiguous and may be `in`. The sum is for who asks for it.
+/// `out` is contiguous and may be `in`. Reading the sum waits.
 template <Readable In, Writable Out, class T, class Op = std::plus<>>
 Pending<T> exclusive_scan(Cuda& exec, const In& in, Out&& out, T initial, Op op = {}) {
   assert(std::size(in) == std::size(out));

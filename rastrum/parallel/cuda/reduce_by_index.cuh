@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// reduce_by_index on a device; see the header of this name for what it computes.
+// reduce_by_index on a device; definition in reduce_by_index.hpp.
 //
-// The 64-bit maximum is the device's own atomic, in place: work O(n), span O(1) beside what
-// contended words cost. Other functions sort and reduce runs, as on the CPU.
+// The 64-bit maximum uses the device's atomic in place: work O(n), span O(1) beside contention.
+// Other functions sort and reduce runs as on the CPU.
 #pragma once
 
 #include <cassert>
@@ -20,7 +20,6 @@
 namespace rastrum::parallel {
 namespace cuda_detail {
 
-/// Whether 0 ≤ index < bins, of any integers.
 template <class Index>
 [[nodiscard]] RASTRUM_HD constexpr bool in_range(Index index, std::size_t bins) {
   if constexpr (std::is_signed_v<Index>)

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// filter and partition on a device; see filter.hpp and partition.hpp.
+// filter and partition on a device; definitions in filter.hpp and partition.hpp.
 //
-// The predicate is asked once per element and kept as a byte; the bytes are counted, so that the
-// result has its size when it is allocated (waits), and Thrust's copy_if or stable_partition_copy
-// moves the elements. Work O(n), span O(log n). Allocate the result, n bytes and CUB's scratch.
+// The predicate runs once per element and is kept as a byte. We count the bytes to allocate the
+// result (waits); then Thrust's copy_if or stable_partition_copy moves the elements. Work O(n),
+// span O(log n). Allocates the result, n bytes and CUB's scratch.
 #pragma once
 
 #include <cstddef>
@@ -60,7 +60,7 @@ template <Readable In, class Predicate>
 template <class T>
 struct DevicePartition {
   DeviceBuffer<T> elements;
-  std::size_t first_count = 0;  ///< how many of them the predicate holds for
+  std::size_t first_count = 0;  ///< the number of elements for which the predicate holds
 };
 
 template <Readable In, class Predicate>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// sort_by_key on a device: CUB's radix sort, of the low bits alone.
+// sort_by_key on a device: CUB's radix sort of the low bits.
 //
 // Work O(n · bits), span O(bits · log n). Allocates n keys, n values and CUB's scratch. Does not
-// wait. Source: Adinets and Merrill, "Onesweep", 2022, as CUB has it.
+// wait. Source: Adinets and Merrill, "Onesweep", 2022.
 #pragma once
 
 #include <cassert>

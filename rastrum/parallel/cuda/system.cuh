@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All that CUDA and the CPU do differently under the words of this folder, and nothing else. nvcc
-// takes system_gpu.cuh. A plain C++ compiler that is told THRUST_DEVICE_SYSTEM_CPP takes
-// system_cpu.cuh. The rest of the code is the same, so the words' tests run it where there is no
-// GPU.
+// All differences between CUDA and the CPU below this folder's words. nvcc takes system_gpu.cuh; a
+// C++ compiler with THRUST_DEVICE_SYSTEM_CPP takes system_cpu.cuh. All other code is shared, so the
+// words' tests also run without a GPU.
 #pragma once
 
 #include <utility>
@@ -12,8 +11,7 @@
 
 #include <rastrum/error.hpp>
 
-// Names say which half they are of: a test on the CPU may be linked with the library's code for
-// GPUs.
+// The namespace differs, because a test on the CPU may link with the library's GPU code.
 #if THRUST_DEVICE_SYSTEM == THRUST_DEVICE_SYSTEM_CUDA
 #define RASTRUM_DEVICE_SYSTEM on_gpu
 #include <rastrum/parallel/cuda/system_gpu.cuh>
@@ -27,7 +25,7 @@
 namespace rastrum::parallel::cuda_system {
 inline namespace RASTRUM_DEVICE_SYSTEM {
 
-/// While it lives, this thread's calls are of `device`.
+/// While it lives, this thread's calls go to `device`.
 class DeviceScope {
  public:
   explicit DeviceScope(int device) : before_(current_device()), device_(device) {
@@ -38,7 +36,7 @@ class DeviceScope {
     try {
       set_device(before_);
     } catch (const Error&) {
-      // It was current before: a device that is lost says so to the next call.
+      // Restoring failed: the next call will report a lost device.
     }
   }
   DeviceScope(const DeviceScope&) = delete;
@@ -48,8 +46,7 @@ class DeviceScope {
   int before_, device_;
 };
 
-/// f(), of which all that fails is an Error: Thrust's algorithms throw an exception of their own.
-/// Around what others call of the device's code, since no one else knows that type.
+/// Returns f() and turns Thrust's exceptions into Errors, because callers do not know that type.
 template <class F>
 decltype(auto) with_errors(F&& f) {
   try {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The half of system.cuh for the CPU: the device's memory is the heap, a team is coroutines, a
-// stream is a list (host_stream.hpp), what was not set is garbage, and under the address sanitizer
-// neither side reads the other's memory (host_walls.hpp).
+// The CPU's half of system.cuh. Device memory is the heap and begins as garbage; a team is
+// coroutines; a stream is a list (host_stream.hpp). Under the address sanitizer neither side can
+// read the other's memory (host_walls.hpp).
 #pragma once
 
 #include <cstddef>
@@ -27,12 +27,12 @@ namespace rastrum::parallel::cuda_system {
 inline namespace on_cpu {
 
 struct Stream {
-  HostStream* work = nullptr;  ///< null: what is given to it is done at once
+  HostStream* work = nullptr;  ///< null: work is done at once
   friend bool operator==(Stream, Stream) = default;
 };
 inline constexpr bool kOnHost = true;
 
-/// As a driver that refuses a call.
+/// Fails as a driver that refuses a call.
 [[noreturn]] inline void refuse(const char* doing) {
   throw Error(Errc::no_device,
               std::string("device: ").append(doing).append(": a fault was asked for"));
@@ -66,7 +66,7 @@ inline constexpr bool kOnHost = true;
           },
           "pinned memory for a device", true};
 }
-/// Devices by number alone, so that tests see which one a call is of.
+/// Only a number, so that tests see which device a call goes to.
 [[nodiscard]] inline int& device_of_thread() {
   thread_local int device = 0;
   return device;
@@ -94,7 +94,7 @@ void give(Stream stream, F work) {
   if (stream.work == nullptr) return work();
   stream.work->add(std::move(work));
 }
-/// A launch of a kernel, whose parameters are its own: they are no memory of the host.
+/// Launches a kernel. Its copied parameters are not host memory.
 template <class F>
 void give_kernel(Stream stream, F kernel) {
   ++device_tally().launches;
@@ -105,7 +105,7 @@ void give_kernel(Stream stream, F kernel) {
     own();
   });
 }
-/// Bytes from here to there, on either side.
+/// Copies bytes between host and device.
 template <class F>
 void give_copy(Stream stream, F copy) {
   give(stream, [copy] {
@@ -126,7 +126,7 @@ inline void wait_for(Stream, void* other) {
   if (DeviceFaults::strikes()) refuse("waiting for the caller's stream");
   if (other != nullptr) static_cast<HostStream*>(other)->run();
 }
-/// Fills new memory with garbage, also where another buffer had it before: reading it unset shows.
+/// Fills a new buffer with garbage, so that reads of unset memory show even where it is reused.
 inline void spoil(Stream stream, void* data, std::size_t bytes) {
   if (bytes > 0) give_copy(stream, [=] { std::memset(data, 0xA5, bytes); });
 }
@@ -150,7 +150,7 @@ inline void copy_rows(Stream stream, void* to, std::size_t to_pitch, const void*
                   static_cast<const char*>(from) + y * from_pitch, bytes);
   });
 }
-/// Thrust's algorithms are done at once, after all that was given to the stream.
+/// Thrust's algorithms run at once, after all earlier work of the stream.
 inline void begin_algorithm(Stream stream) {
   ++device_tally().algorithms;
   if (DeviceFaults::strikes())
@@ -175,7 +175,7 @@ struct LessInLowBits {
   bool operator()(K a, K b) const { return (a & mask) < (b & mask); }
 };
 
-/// As CUB's: the result is in the second room, so that the way back is tested as well.
+/// As CUB's sort, but always with the result in the second room, so that copying it back is tested.
 template <class K, class V, class Allocate>
 [[nodiscard]] int sort_pairs(Stream stream, K* keys[2], V* values[2], std::size_t n, int bits,
                              Allocate&& allocate) {
@@ -195,13 +195,12 @@ template <class K, class V, class Allocate>
   return 1;
 }
 
-/// Few and odd: shares that are not a whole number show. More where races are looked for: what two
-/// elements share is seen where they are not of one member.
+/// A small odd number, so that wrong shares of work show. Larger under the thread sanitizer, which
+/// sees a race only between elements of different members.
 inline constexpr int kMostMembers = kRacesAreSeen ? 7 : 3;
 template <int kThreads>
 inline constexpr std::size_t kTeamMembers = kThreads < kMostMembers ? kThreads : kMostMembers;
 
-/// A member of a team of coroutines.
 template <class Host>
 class Team {
  public:
@@ -215,8 +214,8 @@ class Team {
   Host* host_;
 };
 
-/// share(first, stride) by `kShares` threads, one after the other. Where races are looked for they
-/// are members of a team that never meet: what two elements of a loop share is seen.
+/// Calls share(first, stride) for `kShares` threads in turn. Under the thread sanitizer these are
+/// members of a team that never meet, so that it sees what two elements of a loop share.
 template <std::size_t kShares, class F>
 void run_shares(const F& share) {
   if constexpr (kRacesAreSeen) {
@@ -238,7 +237,7 @@ void launch_indices(Stream stream, std::size_t n, const F& f) {
   });
 }
 
-/// By several threads, so that strides and several ends show.
+/// Uses several threads, to test strides and repeated ends.
 template <class Local, class F>
 void launch_strided(Stream stream, LoopCount n, const F& f) {
   if (n.most == 0) return;
@@ -252,7 +251,7 @@ void launch_strided(Stream stream, LoopCount n, const F& f) {
   });
 }
 
-/// member(n, scratch, team) of each member of one team.
+/// Calls member(n, scratch, team) for each member of one team.
 template <class T, int kThreads, class F>
 void give_team(Stream stream, LoopCount n, F member) {
   if (n.most == 0) return;
@@ -268,7 +267,7 @@ void give_team(Stream stream, LoopCount n, F member) {
   });
 }
 
-/// By one team: its members' strides and several ends show already.
+/// One team suffices: its members already test strides and repeated ends.
 template <class Local, class T, int kThreads, class F>
 void launch_strided_teams(Stream stream, LoopCount n, const F& f) {
   give_team<T, kThreads>(stream, n, [f](std::size_t end, T& scratch, const auto& team) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The half of system.cuh for CUDA: streams, memory, copies, launches and what the driver says of
-// them.
+// CUDA's half of system.cuh: streams, memory, copies, launches and driver errors.
 #pragma once
 
 #include <atomic>
@@ -25,8 +24,8 @@ inline namespace on_gpu {
 using Stream = cudaStream_t;
 inline constexpr bool kOnHost = false;
 
-/// Whether a kernel went wrong before the call that reports it. The driver then refuses all that
-/// this process asks of the device, with the same error.
+/// Whether an earlier kernel failed. The driver then gives the same error for every later call of
+/// this process on the device.
 [[nodiscard]] inline bool is_fault(cudaError_t error) {
   switch (error) {
     case cudaErrorIllegalAddress:
@@ -45,8 +44,7 @@ inline constexpr bool kOnHost = false;
   }
 }
 
-/// Throws Error{out_of_memory} or Error{no_device} that says what was being done, and whether it
-/// was that or a kernel before it.
+/// Throws Error{out_of_memory} or Error{no_device}, and says whether an earlier kernel failed.
 [[noreturn]] inline void fail(cudaError_t error, const char* doing) {
   const Errc code = error == cudaErrorMemoryAllocation ? Errc::out_of_memory : Errc::no_device;
   std::string what("CUDA: ");
@@ -60,32 +58,31 @@ inline constexpr bool kOnHost = false;
 inline void check(cudaError_t error, const char* doing) {
   if (error != cudaSuccess) fail(error, doing);
 }
-/// The same for what Thrust throws, whose codes are the runtime's.
+/// The same for Thrust's exceptions, whose codes are the runtime's.
 [[noreturn]] inline void fail(const thrust::system_error& error) {
-  static_cast<void>(cudaGetLastError());  // or the next call reports it again
+  static_cast<void>(cudaGetLastError());  // clears the error for the next call
   if (error.code().category() == thrust::cuda_category())
     fail(static_cast<cudaError_t>(error.code().value()), error.what());
   throw Error(Errc::no_device, std::string("CUDA: ").append(error.what()));
 }
 
-/// Memory of the current device. Freeing it waits for all work on the device. A failure that is not
-/// for lack of memory is an Error of its own: after a fault every allocation fails, and more memory
-/// would not help.
+/// Memory of the current device. Freeing waits for all work on it. Failures other than lack of
+/// memory throw: after a fault every allocation fails, and freeing memory does not help.
 [[nodiscard]] inline MemorySource memory_source() {
   return {[](std::size_t bytes) -> void* {
             ++device_tally().blocks;
             void* block = nullptr;
             const cudaError_t error = cudaMalloc(&block, bytes);
             if (error == cudaSuccess) return block;
-            static_cast<void>(cudaGetLastError());  // or the next call reports it again
-            if (error == cudaErrorMemoryAllocation) return nullptr;  // the arena says for how much
+            static_cast<void>(cudaGetLastError());  // clears the error for the next call
+            if (error == cudaErrorMemoryAllocation) return nullptr;  // the arena reports it
             fail(error, "allocating");
           },
           [](void* block) noexcept { static_cast<void>(cudaFree(block)); }, "CUDA memory", true};
 }
 
-/// Memory of the host that stays where it is, which a device writes at its own speed and without
-/// the host: copies into other memory go through the driver's, and wait for the stream.
+/// Pinned host memory, to which the device copies at full speed without the host. Copies to other
+/// host memory go through the driver's buffers and wait for the stream.
 [[nodiscard]] inline MemorySource pinned_source() {
   return {[](std::size_t bytes) -> void* {
             void* block = nullptr;
@@ -99,7 +96,6 @@ inline void check(cudaError_t error, const char* doing) {
           "pinned memory for a device", true};
 }
 
-/// The device that this thread's calls are of.
 [[nodiscard]] inline int current_device() {
   int device = 0;
   check(cudaGetDevice(&device), "asking for the current device");
@@ -114,7 +110,7 @@ inline void set_device(int device) {
   check(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "making a stream");
   return stream;
 }
-/// As others know it.
+/// For code without CUDA's headers.
 [[nodiscard]] inline void* handle_of(Stream stream) {
   return stream;
 }
@@ -126,31 +122,29 @@ inline void wait(Stream stream) {
   ++device_tally().waits;
   check(cudaStreamSynchronize(stream), "waiting for a stream");
 }
-/// Work of `other`, a cudaStream_t of this device (null: its default stream), that was given to it
-/// before this call comes before what is given to `stream` from now on.
+/// Orders later work of `stream` behind all work given to `other` until now, a cudaStream_t of this
+/// device (null: its default stream).
 inline void wait_for(Stream stream, void* other) {
   cudaEvent_t event = nullptr;
   check(cudaEventCreateWithFlags(&event, cudaEventDisableTiming), "making an event");
   cudaError_t error = cudaEventRecord(event, static_cast<cudaStream_t>(other));
   if (error == cudaSuccess) error = cudaStreamWaitEvent(stream, event, 0);
-  static_cast<void>(cudaEventDestroy(event));  // kept by the driver until it is reached
+  static_cast<void>(cudaEventDestroy(event));  // the driver keeps it until it is reached
   check(error, "waiting for the caller's stream");
 }
-/// Memory of the device is what it was: what reads it unset is found by initcheck.
+/// Nothing to do: initcheck finds reads of unset device memory.
 inline void spoil(Stream, void*, std::size_t) {}
-/// Zeros there.
 inline void clear(Stream stream, void* data, std::size_t bytes) {
   ++device_tally().launches;
   check(cudaMemsetAsync(data, 0, bytes, stream), "clearing");
 }
-/// Between host and device, either way; of pageable host memory it may wait for the stream.
+/// Between host and device, either way; waits for the stream if the host memory is pageable.
 inline void copy(Stream stream, void* to, const void* from, std::size_t bytes) {
   count_copy(bytes);
   check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyDefault, stream), "copying");
 }
 
-/// The same of `rows` rows of `bytes` bytes that lie `to_pitch` and `from_pitch` bytes apart,
-/// neither less than `bytes`.
+/// The same for `rows` rows of `bytes` bytes, `to_pitch` and `from_pitch` ≥ `bytes` apart.
 inline void copy_rows(Stream stream, void* to, std::size_t to_pitch, const void* from,
                       std::size_t from_pitch, std::size_t bytes, std::size_t rows) {
   count_copy(bytes * rows);
@@ -164,8 +158,8 @@ template <class Allocator>
   return thrust::cuda::par_nosync(allocator).on(stream);
 }
 
-/// Sorts pairs by the low `bits` bits; which of the two rooms has the result is returned (0 or 1).
-/// `allocate(bytes)` is scratch that lives until the sort is over on the stream.
+/// Sorts pairs by the low `bits` bits; returns the room with the result (0 or 1). `allocate(bytes)`
+/// is scratch that must live until the stream has sorted.
 template <class K, class V, class Allocate>
 [[nodiscard]] int sort_pairs(Stream stream, K* keys[2], V* values[2], std::size_t n, int bits,
                              Allocate&& allocate) {
@@ -182,11 +176,10 @@ template <class K, class V, class Allocate>
   return key_rooms.selector;
 }
 
-/// How many members a team of for_each_team has, for arrays of what each keeps to itself.
+/// Members of a team of for_each_team, for arrays with an element per member.
 template <int kThreads>
 inline constexpr std::size_t kTeamMembers = kThreads;
 
-/// A block of threads.
 class Team {
  public:
   [[nodiscard]] __device__ std::size_t rank() const { return threadIdx.x; }
@@ -197,8 +190,8 @@ class Team {
 #if defined(__CUDACC__)
 inline constexpr int kIndexThreads = 128;
 
-/// The functor stays where the launch has put it, in constant memory: CUB's agents take a copy of
-/// it, which a place in it that is known only at run time forces into each thread's own memory.
+/// The functor stays in constant memory, where the launch puts it. CUB's agents otherwise copy it,
+/// into local memory if an index is known only at run time.
 template <class F>
 __global__ void __launch_bounds__(kIndexThreads)
     index_kernel(std::size_t n, const __grid_constant__ F f) {
@@ -206,7 +199,6 @@ __global__ void __launch_bounds__(kIndexThreads)
   if (i < n) f(i);
 }
 
-/// Calls f(i) for i in [0, n), a thread each.
 template <class F>
 void launch_indices(Stream stream, std::size_t n, const F& f) {
   if (n == 0) return;
@@ -218,9 +210,8 @@ void launch_indices(Stream stream, std::size_t n, const F& f) {
   check(cudaGetLastError(), "starting a kernel");
 }
 
-/// How many blocks of a kernel a device holds at once: asked of the driver once a device, since it
-/// takes microseconds. One for each kernel; zero-initialized. Threads that ask together find the
-/// same.
+/// How many blocks of a kernel a device holds at once. Cached, because the driver takes
+/// microseconds to answer. One object per kernel, zero-initialized; a race stores the same value.
 class ResidentBlocks {
  public:
   template <class Kernel>
@@ -237,7 +228,7 @@ class ResidentBlocks {
   }
 
  private:
-  static constexpr std::size_t kDevices = 64;  ///< those beyond are asked each time
+  static constexpr std::size_t kDevices = 64;  ///< later devices are not cached
 
   template <class Kernel>
   [[nodiscard]] static unsigned asked(Kernel kernel, int threads, int device) {
@@ -252,7 +243,7 @@ class ResidentBlocks {
   std::atomic<unsigned> blocks_[kDevices] = {};  ///< 0: not asked yet
 };
 
-/// How often a device is filled by a loop of strides whose length the host knows.
+/// How many times over a strided loop fills the device if the host knows its length.
 inline constexpr unsigned kRounds = 4;
 
 template <class Local, class F>
@@ -265,14 +256,13 @@ __global__ void __launch_bounds__(kIndexThreads)
   f.end(local);
 }
 
-/// Calls f(i, local) for i in [0, n) by threads that take strides, and f.end(local) by each at
-/// last.
+/// Calls f(i, local) for i in [0, n) on threads that take strides, and f.end(local) on each last.
 template <class Local, class F>
 void launch_strided(Stream stream, LoopCount n, const F& f) {
   if (n.most == 0) return;
   const std::size_t wanted = (n.most - 1) / kIndexThreads + 1;
   static ResidentBlocks known;
-  // More than are held at once, where the work is there: who is done early then takes another.
+  // More blocks than fit at once, if there is work for them: they replace those that end early.
   const unsigned resident =
       known.of(strided_kernel<Local, F>, kIndexThreads) * (n.count == nullptr ? kRounds : 1);
   const unsigned blocks = wanted < resident ? static_cast<unsigned>(wanted) : resident;
@@ -281,7 +271,7 @@ void launch_strided(Stream stream, LoopCount n, const F& f) {
   check(cudaGetLastError(), "starting a kernel");
 }
 
-/// Threads of one kernel that a multiprocessor is to hold at least, by the registers of each (80).
+/// The least number of threads per multiprocessor: leaves 80 registers for each.
 inline constexpr int kResidentThreads = 768;
 
 template <class Local, class T, int kThreads, class F>
@@ -299,8 +289,8 @@ __global__ void __launch_bounds__(kThreads, kResidentThreads / kThreads)
   f.end(local);
 }
 
-/// Calls f(i, local, scratch, team) for i in [0, n) by teams of kThreads that take strides, and
-/// f.end(local) by each member at last.
+/// Calls f(i, local, scratch, team) for i in [0, n) on teams of kThreads that take strides, and
+/// f.end(local) on each member last.
 template <class Local, class T, int kThreads, class F>
 void launch_strided_teams(Stream stream, LoopCount n, const F& f) {
   if (n.most == 0) return;
@@ -325,13 +315,12 @@ __global__ void __launch_bounds__(kThreads, kResident)
   }
 }
 
-/// Calls f(i, scratch, team) for i in [0, n) by teams of kThreads.
 template <class T, int kThreads, int kResident, class F>
 void launch_teams(Stream stream, LoopCount n, F f) {
   if (n.most == 0) return;
   constexpr std::size_t kMostBlocks = std::size_t{1} << 20;
   auto blocks = static_cast<unsigned>(n.most < kMostBlocks ? n.most : kMostBlocks);
-  // Most of what a queue has room for is not there.
+  // Device queues are mostly far emptier than their room.
   if (n.count != nullptr) {
     static ResidentBlocks known;
     const unsigned resident = known.of(team_kernel<T, kThreads, kResident, F>, kThreads);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Functions of a team in its shared memory: a sort, an order, prefix sums, and the atomics of words
-// that several of its members change. For bodies of for_each_team; every member calls them.
+// Functions for bodies of for_each_team, in shared memory: sorting, ordering, prefix sums, atomics.
+// Every member calls them.
 //
 // Sources: Batcher, "Sorting networks and their applications", 1968 (bitonic); Blelloch, "Prefix
-// sums and their applications", 1990 (two sweeps over a tree). Both are in place and right for a
-// team of any size: an element's value never waits in a register for a sync. A GPU's teams are
-// whole warps, so one of them sums few values up in registers.
+// sums and their applications", 1990 (two sweeps over a tree). Both work in place for any team
+// size, because no member holds a value across a sync. A GPU's teams are whole warps, so one warp
+// sums few values in registers.
 #pragma once
 
 #include <atomic>
@@ -17,8 +17,7 @@
 
 namespace rastrum::parallel {
 
-/// word |= bits, by many threads at once.
-/// 32 bits, which shared memory has an instruction for.
+/// word |= bits, atomically. 32 bits, for which shared memory has an instruction.
 RASTRUM_HD inline void atomic_or(std::uint32_t& word, std::uint32_t bits) noexcept {
 #if defined(__CUDA_ARCH__)
   atomicOr(&word, bits);
@@ -27,7 +26,7 @@ RASTRUM_HD inline void atomic_or(std::uint32_t& word, std::uint32_t bits) noexce
 #endif
 }
 
-/// The next power of two: how many elements the two below need room for.
+/// The next power of two: the room that the functions below need for n elements.
 [[nodiscard]] RASTRUM_HD constexpr std::size_t team_room(std::size_t n) {
   std::size_t room = 1;
   while (room < n) room *= 2;
@@ -36,7 +35,7 @@ RASTRUM_HD inline void atomic_or(std::uint32_t& word, std::uint32_t bits) noexce
 
 namespace team_detail {
 
-/// Fills the room behind n pairs with what sorts last.
+/// Pads n pairs with keys that sort last.
 template <class K, class V, class Team>
 RASTRUM_HD void fill_room(K* keys, V* values, std::size_t n, std::size_t room, const Team& team) {
   for (std::size_t i = n + team.rank(); i < room; i += team.size()) {
@@ -45,7 +44,7 @@ RASTRUM_HD void fill_room(K* keys, V* values, std::size_t n, std::size_t room, c
   }
   team.sync();
 }
-/// Compares and exchanges pairs that lie `step` apart, in runs that rise and fall by turns.
+/// Compares and exchanges pairs `step` apart; runs alternately ascend and descend.
 template <class K, class V, class Team>
 RASTRUM_HD void bitonic_step(K* keys, V* values, std::size_t room, std::size_t run,
                              std::size_t step, const Team& team) {
@@ -65,8 +64,8 @@ RASTRUM_HD void bitonic_step(K* keys, V* values, std::size_t room, std::size_t r
 }
 
 #if defined(__CUDA_ARCH__)
-/// team_prefix_sums of `room` values, a power of two, by the first warp: each lane takes a run of
-/// them, so the two sweeps' syncs are saved.
+/// team_prefix_sums of `room` values, a power of two, in the first warp: each lane takes a run of
+/// them, which saves the syncs of the two sweeps.
 template <class T, class Team>
 __device__ void warp_prefix_sums(T* values, std::size_t room, const Team& team) {
   constexpr unsigned kLanes = 32;
@@ -96,9 +95,8 @@ __device__ void warp_prefix_sums(T* values, std::size_t room, const Team& team) 
 
 }  // namespace team_detail
 
-/// Sorts n pairs by their keys, ascending; keys are unsigned, and for equal ones the order is open.
-/// Overwrites team_room(n) keys and values. Begins and ends with a sync.
-/// Work O(n log² n), span O(log² n) steps of n / team.
+/// Sorts n pairs by unsigned keys, ascending; not stable. Overwrites team_room(n) keys and values.
+/// Begins and ends with a sync. Work O(n log² n), span O(log² n) steps of n / team.
 template <class K, class V, class Team>
 RASTRUM_HD void team_sort(K* keys, V* values, std::size_t n, const Team& team) {
   const std::size_t room = team_room(n);
@@ -108,9 +106,9 @@ RASTRUM_HD void team_sort(K* keys, V* values, std::size_t n, const Team& team) {
       team_detail::bitonic_step(keys, values, room, run, step, team);
 }
 
-/// order[i] becomes which of n keys is the i-th smallest; for equal ones the order is open.
-/// Overwrites team_room(n) of both. Begins and ends with a sync. Work O(n²) of few keys, where each
-/// member counts those before its own and nobody waits, else that of team_sort.
+/// order[i] becomes the index of the i-th smallest of n keys; equal keys come in any order.
+/// Overwrites team_room(n) of both. Begins and ends with a sync. Few keys take O(n²) work without
+/// syncs between (each member counts the keys before its own), more that of team_sort.
 template <class K, class V, class Team>
 RASTRUM_HD void team_order(K* keys, V* order, std::size_t n, const Team& team) {
   constexpr std::size_t kFew = 256;
@@ -131,8 +129,8 @@ RASTRUM_HD void team_order(K* keys, V* order, std::size_t n, const Team& team) {
   team.sync();
 }
 
-/// values[i] becomes the sum of the first i values, for i ≤ n: the last is the sum of all.
-/// Overwrites team_room(n) + 1 values. Begins and ends with a sync. Work O(n), span O(log n) steps.
+/// values[i] becomes the sum of the first i values for i ≤ n, so values[n] is the total. Overwrites
+/// team_room(n) + 1 values. Begins and ends with a sync. Work O(n), span O(log n) steps.
 template <class T, class Team>
 RASTRUM_HD void team_prefix_sums(T* values, std::size_t n, const Team& team) {
   const std::size_t room = team_room(n);

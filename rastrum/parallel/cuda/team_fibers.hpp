@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tells the thread sanitizer about a team on the CPU (team_on_host.hpp): each member is a fiber of
-// its own, and only a sync orders what two members do. So two accesses of shared memory without a
-// sync between them are reported as a race, whichever member came first here; the coroutines' turns
-// alone would show a missing sync by luck. Without that sanitizer it does nothing.
+// Tells the thread sanitizer that members of a team on the CPU (team_on_host.hpp) are fibers that
+// only syncs order. So it reports any two accesses without a sync between, whichever member came
+// first, where the coroutines' order would show a missing sync only by luck. Without that sanitizer
+// this does nothing.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@
 #include <sanitizer/tsan_interface.h>
 
 #include <vector>
-// GCC's: clang would note its entry all the same.
+// GCC only: clang instruments the function's entry even so.
 #define RASTRUM_NOT_SEEN __attribute__((no_sanitize_thread, noinline))
 #else
 #define RASTRUM_NOT_SEEN
@@ -45,17 +45,18 @@ class TeamFibers {
   TeamFibers(const TeamFibers&) = delete;
   TeamFibers& operator=(const TeamFibers&) = delete;
 
-  /// Right before the caller's context switches to a member's, and back. They are no sync: the
-  /// caller's turns order nothing. Entered in one fiber and left in another, so not seen.
+  /// Called just before a switch to a member's context, and back. They do not synchronize. Not
+  /// instrumented, because they are entered in one fiber and left in another.
   RASTRUM_NOT_SEEN void to(std::size_t rank) {
     __tsan_switch_to_fiber(members_[rank].fiber, kOrdersNothing);
   }
   RASTRUM_NOT_SEEN void back() { __tsan_switch_to_fiber(caller_, kOrdersNothing); }
-  /// By a member: after all that the caller did before, and before all that it does after.
+  /// A member's `enter` comes after all that the caller did before; `leave` comes before all that
+  /// the caller does after `joined`.
   void enter() { __tsan_acquire(&begun_); }
   void leave() { __tsan_release(&ended_); }
   void joined() { __tsan_acquire(&ended_); }
-  /// By a member around its wait for the others. No member is two meetings ahead, so two places do.
+  /// A member calls them around its wait. No member is two meetings ahead, so two places suffice.
   void arrive(std::size_t rank) { __tsan_release(&met_[members_[rank].meetings & 1U]); }
   void depart(std::size_t rank) { __tsan_acquire(&met_[members_[rank].meetings++ & 1U]); }
 
@@ -65,7 +66,7 @@ class TeamFibers {
     void* fiber = nullptr;
     unsigned meetings = 0;
   };
-  /// Each is as dear as a thread, so they serve one team after the other.
+  /// Reused by later teams, because a fiber costs as much as a thread.
   struct Spare {
     std::vector<void*> fibers;
     ~Spare() {

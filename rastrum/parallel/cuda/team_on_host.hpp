@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A team of a device on the CPU, for the tests: its members are coroutines of one thread, each of
-// which runs until it syncs. So code that misses a sync is wrong at every run: the member that
-// comes first reads what the others have yet to write. Another member comes first after every sync.
-// POSIX's ucontext is deterministic and wants no compiler's help; threads with a barrier took a
-// scheduler's turn for each sync, minutes on a busy machine. The thread sanitizer is told that
-// members are threads (team_fibers.hpp): so the data that they share with their caller is atomic.
+// A device's team on the CPU, for tests. Members are coroutines of one thread; each runs until it
+// syncs. So a missing sync is wrong in every run: the first member reads what the others have yet
+// to write. The order reverses at every sync. ucontext is deterministic and needs no compiler
+// support; threads with a barrier took minutes on a busy machine. For the thread sanitizer members
+// are threads (team_fibers.hpp), so what they share with their caller is atomic.
 #pragma once
 
 #include <ucontext.h>
@@ -22,8 +21,8 @@
 
 namespace rastrum::parallel::cuda_system {
 
-/// The stack of a coroutine. A team's stacks serve the next team: fresh memory for each costs more
-/// than the small bodies of tests, under a sanitizer most of all.
+/// The stack of a coroutine. Later teams reuse it: fresh memory costs more than the small bodies of
+/// tests, above all under a sanitizer.
 class TeamStack {
  public:
   static constexpr std::size_t kBytes = std::size_t{1} << 18;
@@ -46,12 +45,11 @@ class TeamStack {
   std::unique_ptr<char[]> room_;
 };
 
-/// kMembers coroutines that run one body.
 template <std::size_t kMembers, class Body>
 class TeamOnHost {
  public:
-  /// Calls body(rank, *this) by all members, which meet in sync(). Throws std::logic_error where
-  /// one ends while another waits.
+  /// Calls body(rank, *this) on all members, which meet in sync(). Throws std::logic_error if one
+  /// ends while another waits.
   static void run(const Body& body) { TeamOnHost(body).run_all(); }
 
   void sync(std::size_t rank) {
@@ -95,7 +93,7 @@ class TeamOnHost {
     current_ = outer;
     if (done != kMembers) throw std::logic_error("a member of a team missed a sync of the others");
   }
-  /// A coroutine's first function returns to the caller's context, so no one may watch it return.
+  /// Not instrumented, because it returns to the caller's context.
   RASTRUM_NOT_SEEN static void start() {
     TeamOnHost& team = *current_.load();
     team.be_member(team.starting_);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All the data-parallel words on a CUDA device, but for those of words.hpp that are loops of
-// threads with a state of their own: for_each_with_scratch is for_each_team (exec.cuh) here, and
-// there is no WorkQueue.
+// All data-parallel words on a CUDA device. Two of words.hpp are missing, whose threads have state:
+// for_each_team (exec.cuh) stands for for_each_with_scratch, and there is no WorkQueue.
 #pragma once
 
 #include <rastrum/parallel/cuda/buffer.cuh>

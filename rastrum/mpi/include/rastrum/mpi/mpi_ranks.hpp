@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The ranks of an MPI program, for render_parts (rastrum/ranks.hpp). Link Rastrum::mpi, which is
-// there if CMake has found MPI.
+// The ranks of an MPI program, for render_parts (rastrum/ranks.hpp). Link Rastrum::mpi, which
+// exists if CMake has found MPI.
 #pragma once
 
 #include <exception>
@@ -16,19 +16,19 @@
 namespace RASTRUM_API rastrum {
 namespace mpi {
 
-/// The ranks of a caller's communicator. It uses a duplicate, so neither the messages nor the error
-/// handler of the original are touched. All ranks make and destroy it together, between MPI_Init
-/// and MPI_Finalize. One thread of each uses it, the one that MPI_THREAD_FUNNELED allows to call
-/// MPI. An error that MPI reports ends the job (MPI_Abort), with a message that says what was being
-/// done: MPI 3 cannot go on without a rank.
+/// The ranks of a caller's communicator. It uses a duplicate, so the original's messages and error
+/// handler stay untouched. All ranks make and destroy it together, between MPI_Init and
+/// MPI_Finalize. On each rank only the thread that may call MPI (MPI_THREAD_FUNNELED) uses it. An
+/// MPI error ends the job (MPI_Abort) with a message that says what failed, because MPI 3 cannot go
+/// on without a rank.
 class MpiRanks final : public Communicator {
  public:
-  /// `timeout_s`: a rank that waits longer than this for others, because one has died or hangs,
-  /// ends the job and says in which phase of which rank. It must be longer than the longest phase
-  /// of a frame; 0: it waits for ever. `before_abort` is called before this rank ends the job,
-  /// which runs no destructor; it is for what is half done (io::abandon_files). `shares`: whether
-  /// ranks that are all of one machine share memory (share); the first frame takes some
-  /// milliseconds for its windows. Throws Error{invalid_argument} unless MPI runs.
+  /// `timeout_s`: a rank that waits longer for others, because one has died or hangs, ends the job
+  /// and prints its rank and phase. It must exceed the longest phase of a frame; 0: wait for ever.
+  /// `before_abort` is called before this rank ends the job, which runs no destructors: for
+  /// cleaning up what is half done (io::abandon_files). `shares`: whether ranks on one machine
+  /// share memory (share); its windows cost the first frame some milliseconds. Throws
+  /// Error{invalid_argument} unless MPI runs.
   explicit MpiRanks(MPI_Comm comm, double timeout_s = 0, Function<void()> before_abort = {},
                     bool shares = true);
   ~MpiRanks() override;
@@ -45,37 +45,36 @@ class MpiRanks final : public Communicator {
   /// Exchanges in pairs, in pieces of at most 1 GiB, because MPI 3 counts in int.
   void exchange(std::span<const std::span<const std::byte>> to,
                 std::span<const std::span<std::byte>> from) override;
-  /// A window that the first rank holds, if all are of one machine (MPI_COMM_TYPE_SHARED). It is
-  /// kept as long as it is large enough. If some rank cannot have it, none has, and nobody asks
-  /// again for as much.
+  /// A window on the first rank, if all ranks are on one machine (MPI_COMM_TYPE_SHARED). It is kept
+  /// while it is large enough. If one rank cannot have it, none has, and this size is not tried
+  /// again.
   [[nodiscard]] std::span<std::uint64_t> share(std::size_t count) override;
 
  private:
-  /// Whether all ranks are of one machine; it is found out once.
+  /// Whether all ranks are on one machine; found out once.
   [[nodiscard]] bool is_one_node();
   void free_window();
   void check(int code, const char* what) const;
   /// Ends the job and does not return.
   void end_job() const;
-  /// Waits until the requests are done.
   void wait(std::span<MPI_Request> requests, const char* what) const;
 
   MPI_Comm comm_ = MPI_COMM_NULL;
   int rank_ = 0, size_ = 1;
   const int exceptions_ = std::uncaught_exceptions();
   bool shares_ = true;
-  MPI_Comm node_ = MPI_COMM_NULL;  ///< the ranks of this machine, once it was asked for
+  MPI_Comm node_ = MPI_COMM_NULL;  ///< the ranks of this machine; null until needed
   bool one_node_ = false;
   MPI_Win window_ = MPI_WIN_NULL;
   std::span<std::uint64_t> shared_{};
-  std::size_t too_much_ = 0;  ///< so many numbers could not be shared; 0: none failed yet
+  std::size_t too_much_ = 0;  ///< this many numbers could not be shared; 0: none failed yet
   double timeout_s_ = 0;
   Function<void()> before_abort_;
   std::string phase_ = "begin";
 };
 
-/// Calls render_parts with the ranks of `comm`. It is for one picture: a caller that draws many
-/// keeps MpiRanks, which duplicates the communicator once and shares memory.
+/// Calls render_parts with the ranks of `comm`, for one picture. To draw many, keep MpiRanks, which
+/// duplicates the communicator once and shares memory.
 RanksStats render(MPI_Comm comm, Renderer& renderer, const SceneView& scene,
                   std::span<const std::uint64_t> parts, const Camera& camera,
                   const FrameOptions& frame, const Targets& targets,
