@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A Blinn-Phong teapot on a checkerboard that runs to the horizon: an infinite far plane, and a
-// floor of two triangles whose squares are computed at each pixel.
+// floor of two triangles whose squares are computed per pixel.
 #include <algorithm>
 #include <cmath>
 

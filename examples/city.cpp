@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A city in UTM coordinates, millions of metres from their origin. Its float64 positions are
-// transformed in float64, so its edges are straight. The second picture shows it rounded to
-// float32, where neighbouring numbers are half a metre apart.
+// A city in UTM coordinates, millions of metres from their origin. Its float64 positions keep its
+// edges straight. The second picture shows it rounded to float32, where neighbouring numbers are
+// half a metre apart.
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -16,7 +16,7 @@ constexpr Vec3d kOrigin{447000.25, 5411000.75, 33.5};  // easting, northing, hei
 struct City {
   std::vector<Vec3d> positions;
   std::vector<std::uint32_t> quads;
-  std::vector<Vec4> colors;  // one a face
+  std::vector<Vec4> colors;  // one per face
 
   void face(const Vec3d (&corners)[4], Vec4 color) {
     for (const Vec3d& p : corners) {

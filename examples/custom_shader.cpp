@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Functions of one's own for vertices and fragments, with a varying of one's own: a waving flag
-// with stripes, a hole that is discarded, and the normals as a second output.
+// A program with its own vertex and fragment functions and its own varying: a waving flag with
+// stripes, a hole that is discarded, and the normals as a second output.
 #include <array>
 #include <cmath>
 #include <vector>
@@ -11,7 +11,7 @@
 
 using rastrum::Vec2, rastrum::Vec3, rastrum::Vec4;
 
-/// The vertex function hands this to the fragment function. Any type with + and * float will do.
+/// Goes from the vertex function to the fragment function. Any type with + and * float will do.
 struct Cloth {
   Vec2 at;
   Vec3 normal;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shows depth³ as grey, without any light: near is white. The camera has a finite far plane right
-// behind the model, so that its depths span [0, 1]. A second target gets the depth itself.
+// Shows depth³ as grey: near is white. The camera's far plane is right behind the model, so that
+// its depths span [0, 1]. A second target gets the depth itself.
 #include <array>
 #include <cstdio>
 

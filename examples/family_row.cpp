@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Draws by the rows of the papers' table: ways to find what triangles cover, and ways to resolve a
-// pixel. Each row draws the same picture as a plain renderer, in its own time, which is printed.
+// pixel. Each row draws the same picture as a plain renderer and prints its time.
 #include <cstdio>
 
 #include <rastrum/digest.hpp>

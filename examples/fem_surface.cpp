@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The result of finite elements: the stress around a hole in the wall of a pipe, with isolines, the
-// elements' edges and a colour bar. The solver's arrays are drawn where they lie, as they are.
+// A result of finite elements: the stress around a hole in the wall of a pipe, with isolines, the
+// elements' edges and a colour bar. The solver's arrays are drawn in place.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -14,8 +14,8 @@
 
 int main() {
   constexpr int kAround = 96, kOutward = 16;  // elements
-  constexpr double kPipe = 3;                 // its radius; that of the hole is 1
-  std::vector<double> nodes, stress;          // three numbers a node, and one
+  constexpr double kPipe = 3;                 // its radius; the hole's is 1
+  std::vector<double> nodes, stress;          // three numbers per node, and one
   std::vector<std::int64_t> elements;         // four nodes each
   for (int j = 0; j <= kOutward; ++j)
     for (int i = 0; i < kAround; ++i) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Places the default camera before an array of triangles that the program owns. It also finds where
-// a point of the world falls in the picture, which an overlay of labels needs.
+// Places the default camera before an array of triangles of the program. It also finds the pixel of
+// a point of the world, as for a label.
 #include <cstdio>
 #include <vector>
 
 #include <rastrum/scene.hpp>
 
 int main() {
-  // A tetrahedron in the caller's own arrays; Rastrum borrows them and copies nothing.
+  // A tetrahedron in the caller's own arrays, which Rastrum does not copy.
   const std::vector<rastrum::Vec3> positions{{1, 1, 1}, {-1, -1, 1}, {-1, 1, -1}, {1, -1, -1}};
   const std::vector<std::uint32_t> indices{0, 1, 3, 0, 2, 1, 0, 3, 2, 1, 2, 3};
   rastrum::MeshView mesh;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A random colour for each triangle, from its id alone: the shader needs no attribute at all. The
-// model is turned by a quaternion half way between two poses.
+// A random colour for each triangle, from its id alone: the shader needs no attribute. The model is
+// turned by a quaternion half way between two poses.
 #include <cstdio>
 
 #include <rastrum/io.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A planetary gear as a translucent assembly, whose layers are blended in their exact order. The
-// lids of its housing have a clip plane of their own, which opens nothing else.
+// A planetary gear as a translucent assembly, blended exactly. The lids of its housing have their
+// own clip plane.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -13,7 +13,7 @@
 using rastrum::Mat4d, rastrum::Mesh, rastrum::Vec3, rastrum::Vec3d, rastrum::Vec4;
 constexpr double kTurn = 2 * std::numbers::pi;
 
-/// A ring around the z axis, with `teeth` outside, or inside if there are fewer than 0.
+/// Around the z axis, with `teeth` outside, or inside if there are fewer than 0.
 Mesh ring(double inner, double outer, double from_z, double to_z, int teeth = 0) {
   constexpr std::uint32_t kSteps = 720;
   Mesh mesh;

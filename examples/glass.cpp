@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Opaque and translucent surfaces in one frame: a teapot inside three glass tubes that run through
-// each other. The draw of the tubes says kTranslucent, and the shader returns their alpha, which
-// grows towards the silhouette; nothing is sorted here.
+// each other. The tubes' draw has kTranslucent, and the shader returns their alpha, which grows
+// towards the silhouette. Nothing is sorted here.
 #include <cmath>
 #include <span>
 

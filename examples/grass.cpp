@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Several meshes and several passes: a hill, a teapot, a ball and blades of grass. A later pass
-// loads the visibility keys of those before, so that the nearer wins.
+// loads the earlier visibility keys, so that the nearer wins.
 #include <algorithm>
 
 #include <rastrum/io.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A molecule (C60) as exact spheres and cylinders. The atom that is picked under a pixel is drawn
-// in red, its neighbours in orange.
+// A molecule (C60) as exact spheres and cylinders. The atom under a pixel is red, its neighbours
+// are orange.
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>

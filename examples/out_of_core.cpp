@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Draws a mesh file that does not fit into memory, within a limit of memory. The picture is that of
+// Draws a mesh file that does not fit into memory, within a memory limit. The picture is that of
 // the whole file, bit for bit. Its rows are written as they come.
 #include <cstdint>
 #include <cstdio>
@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
   try {
     const rastrum::OutOfCoreFile file(argv[1]);
     const rastrum::FrameOptions frame{.width = 1280, .height = 720};
-    // Looks at all vertices of the file, in place of a scene's.
+    // Reads all vertices of the file, in place of a scene's.
     rastrum::FitOfFile vertices(file);
     const rastrum::Camera along_z;
     const rastrum::Camera camera =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A cloud of points: of a PLY file without faces, or of hills that a scanner flew over. The hills
-// have normals and are lit; the scanner's path is a line.
+// A cloud of points: a PLY file without faces, or hills that a scanner flew over. The hills have
+// normals and are lit; the scanner's path is a line.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Draws one picture of parts that lie on several ranks, here threads of one process, each with arms
-// of a galaxy in memory of its own. The picture has the same bits for any number of ranks.
+// Draws one picture of parts on several ranks, here threads of one process, each with its own arms
+// of a galaxy. The picture has the same bits for any number of ranks.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -36,7 +36,7 @@ int main() {
 
   const auto draw = [&](rastrum::Communicator& ranks) {
     const auto rank = static_cast<std::uint64_t>(ranks.rank());
-    std::vector<std::uint64_t> parts;  // the numbers of this rank's arms among all arms
+    std::vector<std::uint64_t> parts;  // numbers of this rank's arms among all arms
     std::vector<std::vector<Vec3>> stars;
     std::vector<rastrum::SpheresView> views;
     std::vector<rastrum::InstanceView> instances;
@@ -48,7 +48,7 @@ int main() {
     for (std::size_t i = 0; i < views.size(); ++i)
       instances.push_back({.geometry = views[i], .color = kColors[parts[i]]});
     rastrum::Renderer renderer({.threads = 1});
-    // Rank 0, the root, gets the picture; the targets of others are not looked at.
+    // Rank 0, the root, gets the picture; targets of others are not used.
     rastrum::render_parts(ranks, renderer, {.instances = instances}, parts, camera, frame,
                           {.color8 = picture});
   };

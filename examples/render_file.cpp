@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Renders a mesh file as `rastrum render FILE -o OUT.png` does: read, look at all of it, draw,
-// write.
+// Renders a mesh file as `rastrum render FILE -o OUT.png` does.
 #include <cstdio>
 
 #include <rastrum/fit.hpp>
@@ -16,7 +15,7 @@ int main(int argc, char** argv) {
   try {
     rastrum::Scene scene = rastrum::io::read_scene(argv[1]);
     for (const std::string& w : scene.warnings) std::fprintf(stderr, "warning: %s\n", w.c_str());
-    // Without normals a mesh is drawn faceted; smooth ones, but for edges beyond 40°, are one call.
+    // A mesh without normals is drawn faceted; this makes smooth ones, but for edges beyond 40°.
     for (rastrum::Mesh& mesh : scene.meshes)
       if (mesh.normals.empty())
         mesh.normals = rastrum::crease_normals(mesh.positions, mesh.indices, 40);
@@ -29,7 +28,7 @@ int main(int argc, char** argv) {
     const rastrum::Camera camera =
         rastrum::fit_picture(binding.view(), along_z, frame.width, frame.height);
 
-    // A Renderer keeps its threads and memory, for the frames after the first.
+    // A Renderer keeps its threads and memory for later frames.
     rastrum::Renderer renderer;
     rastrum::Image<rastrum::Rgba8> image(frame.width, frame.height);
     const rastrum::FrameStats stats =

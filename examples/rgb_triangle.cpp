@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The first example of paper 1: one triangle whose corners are red, green and blue. Varyings may be
-// any type with + and * float; here it is a Vec3.
+// The first example of paper 1: one triangle whose corners are red, green and blue. A varying may
+// be any type with + and * float; here it is a Vec3.
 #include <cstdio>
 
 #include <rastrum/io.hpp>

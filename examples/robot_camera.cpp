@@ -32,7 +32,7 @@ int main() {
       {.geometry = views[0], .color = Vec4{0.55F, 0.7F, 0.75F, 1}, .id = 7},
       {.geometry = views[1], .color = Vec4{0.85F, 0.55F, 0.35F, 1}, .id = 8},
       {.geometry = views[2], .color = Vec4{0.5F, 0.75F, 0.4F, 1}, .id = 9}};
-  // It stands 0.8 m away and 0.38 m high and looks down by 20°; OpenCV has y down and z ahead.
+  // 0.8 m away and 0.38 m high, looking down by 20°; OpenCV has y down and z ahead.
   const double c = std::cos(0.349), s = std::sin(0.349);
   const rastrum::Mat4d pose = rastrum::pose_from({1, 0, 0, 0, -c, s, 0, -s, -c},
                                                  {0, 0.38 * c - 0.8 * s, 0.38 * s + 0.8 * c});

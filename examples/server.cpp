@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A server of pictures: four threads take requests from a queue. They share the scene, which nobody
-// changes, and each has a renderer of its own. When the server ends, it stops the frames in work.
+// A server of pictures: four threads take requests from a queue. They share the scene, which does
+// not change; each has its own renderer. The server's end stops the current frames.
 #include <cmath>
 #include <condition_variable>
 #include <deque>
@@ -17,7 +17,7 @@
 #include <rastrum/shapes.hpp>
 
 using Picture = rastrum::Image<rastrum::Rgba8>;
-/// The future has the picture or an Error; that is Stopped if the server has ended meanwhile.
+/// The future has the picture or an Error; Stopped if the server has ended.
 using Request = std::packaged_task<Picture(rastrum::Renderer&, std::stop_token)>;
 
 int main() {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Spheres, tubes, a cone, an open cylinder and discs in one scene with a mesh: exact surfaces,
-// which cut each other and the floor where they meet.
+// Spheres, tubes, a cone, an open cylinder and discs in one scene with a mesh: exact surfaces that
+// cut each other and the floor.
 #include <cmath>
 #include <vector>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A teapot with its wireframe and its normals: triangles and lines of one program in one frame. The
-// surface is moved back by a little more than its own slope, so that the edges on it are seen.
+// surface is moved back by a little more than its slope, so that its edges are visible.
 #include <cstdio>
 #include <vector>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A terrain with a mesh on it: a height map in the light of a sun, drawn without triangles, and a
-// teapot that stands on the ground, partly behind a hill. They meet by depth.
+// A terrain with a mesh on it: a height map under a sun, drawn without triangles, and a teapot on
+// the ground, partly behind a hill. They meet by depth.
 #include <cmath>
 
 #include <rastrum/io.hpp>
@@ -48,7 +48,7 @@ int main() {
       rastrum::scaling({8, 8, 8});
   const rastrum::InstanceView instance{
       .geometry = view, .object_to_world = place, .color = rastrum::Vec4{0.8F, 0.35F, 0.2F, 1}};
-  // The terrain's camera as it stood, lifted from the ground.
+  // The terrain's camera, lifted from the ground.
   rastrum::SceneOnTerrain(rastrum::Renderer())
       .draw({.scene = {.instances = {&instance, 1}}},
             {.width = options.width, .height = options.height}, options, stats.camera, targets);

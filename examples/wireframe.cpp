@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The edges of a mesh as lines, each drawn once, brighter where they are near.
+// A mesh's edges as lines, each drawn once, brighter where they are near.
 #include <algorithm>
 #include <cstdio>
 #include <vector>

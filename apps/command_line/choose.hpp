@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One of a few words of a command line.
+// Options whose value is one of a few words.
 #pragma once
 
 #include <algorithm>
@@ -13,17 +13,15 @@
 
 namespace rastrum::cli {
 
-/// The words, each with its value.
 template <class T>
 using Choices = std::vector<std::pair<const char*, T>>;
 
-/// The word of a value.
 template <class T>
 const char* word_of(const Choices<T>& choices, std::type_identity_t<T> value) {
   return std::ranges::find(choices, value, &std::pair<const char*, T>::second)->first;
 }
 
-/// The value of the word `text`. Throws UsageError that lists the words.
+/// Throws UsageError that lists the words.
 template <class T>
 T choose(std::string_view option, const std::string& text, const Choices<T>& choices) {
   std::string known;
@@ -34,7 +32,7 @@ T choose(std::string_view option, const std::string& text, const Choices<T>& cho
   throw UsageError(option, "expected one of " + known + ", got '" + text + "'");
 }
 
-/// An option that is one of the words; `name` has static storage.
+/// `name` has static storage.
 template <class T>
 Option add_choice(Parser& app, const char* name, const char* type, const std::string& help,
                   T& value, std::type_identity_t<Choices<T>> choices) {

@@ -113,7 +113,7 @@ Option Parser::add_flag(const std::string& names, bool& value, const std::string
 
 namespace {
 
-/// The names of options, as in --size, of `app` and of its commands that were given.
+/// Option names, as in --size, of `app` and of its given commands.
 std::vector<std::string> option_names(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options())
@@ -123,7 +123,7 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
-/// For arguments that nothing takes: the first option that is none, and what may have been meant.
+/// For unknown arguments: the first unknown option, and what may have been meant.
 std::string not_taken(const CLI::ExtrasError& error, const CLI::App& app) {
   const std::vector<std::string> names = option_names(app);
   const std::vector<std::string_view> known(names.begin(), names.end());
@@ -135,7 +135,7 @@ std::string not_taken(const CLI::ExtrasError& error, const CLI::App& app) {
   return error.what();
 }
 
-/// `parse`, with CLI11's errors as ours.
+/// Runs `parse` and translates CLI11's errors into ours.
 template <class F>
 bool parse_as_ours(CLI::App& app, F parse) {
   try {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The command line of programs and benchmarks: a small face of CLI11, whose headers cost a source
-// more time to compile than most sources have; parser.cpp alone includes them.
+// The command line of programs and benchmarks: a small face of CLI11. Its headers take longer to
+// compile than most sources, so only parser.cpp includes them.
 #pragma once
 
 #include <concepts>
@@ -21,7 +21,7 @@ class Option;
 
 namespace rastrum::cli {
 
-/// A command line that cannot be meant (exit status 2). The message names the option.
+/// An invalid command line (exit status 2). The message names the option.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -29,13 +29,13 @@ class UsageError : public std::runtime_error {
       : std::runtime_error(std::string(option) + ": " + problem) {}
 };
 
-/// A declared option, to say more of it: add(…)->required()->type_name("").
+/// For more settings of a declared option: add(…)->required()->type_name("").
 class Option {
  public:
   explicit Option(CLI::Option* option) : option_(option) {}
   const Option* operator->() const { return this; }
 
-  const Option& type_name(const std::string& name) const;  ///< what --help calls its value
+  const Option& type_name(const std::string& name) const;  ///< the name of its value in --help
   const Option& required() const;
   const Option& expected(int least, int most) const;  ///< values that it takes
   const Option& delimiter(char c) const;              ///< between the values of a list
@@ -51,51 +51,48 @@ class Option {
   CLI::Option* option_;
 };
 
-/// A command and its options. Copies are of the same command.
+/// A command and its options. Copies refer to the same command.
 class Parser {
  public:
-  /// Parses a command line by itself, not as a subcommand.
+  /// For a command line of its own, not a subcommand.
   explicit Parser(const std::string& name = "", const std::string& description = "");
 
-  /// The same command; the options that this one adds stand under `heading` in --help; "":
-  /// they are not listed.
+  /// The same command, whose new options --help lists under `heading`; "": not at all.
   [[nodiscard]] Parser under(const std::string& heading) const;
   [[nodiscard]] Parser add_subcommand(const std::string& name, const std::string& description);
-  /// For --help alone; "": not listed.
+  /// In --help; "": not listed.
   void group(const std::string& name);
   void footer(const std::string& text);
   void version(const std::string& text);  ///< adds --version
   void require_subcommand();
-  /// The rest of the command line, --help too, is not this parser's: rest() has it.
+  /// Leaves the rest of the command line, --help too, to rest().
   void leave_rest();
   [[nodiscard]] std::vector<std::string> rest() const;
 
-  /// An option whose text `parse` turns into a value; it may throw UsageError.
+  /// `parse` turns the option's text into a value; it may throw UsageError.
   Option add(const std::string& names, const std::string& type, const std::string& help,
              std::function<void(const std::string&)> parse);
-  /// One that may be given several times; `parse` sees them in their order.
+  /// May be given several times; `parse` gets the texts in their order.
   Option add_repeated(const std::string& names, const std::string& type, const std::string& help,
                       std::function<void(const std::string&)> parse);
-  /// An option that is a value; T: int, std::uint64_t, float, double, std::string or
-  /// a vector of strings.
+  /// T: int, std::uint64_t, float, double, std::string or a vector of strings.
   template <class T>
   Option add_option(const std::string& names, T& value, const std::string& help);
   Option add_flag(const std::string& names, bool& value, const std::string& help);
 
-  /// False where --help or --version was asked for and has been printed. Throws UsageError.
+  /// False if --help or --version was printed. Throws UsageError.
   [[nodiscard]] bool parse(std::span<const std::string_view> arguments);
-  /// One line of text, options parted by spaces and quoted as in a shell.
+  /// One line of text, separated by spaces and quoted as in a shell.
   [[nodiscard]] bool parse(const std::string& line);
-  [[nodiscard]] bool parsed() const;                        ///< this command was given
+  [[nodiscard]] bool parsed() const;                        ///< whether this command was given
   [[nodiscard]] bool given(const std::string& name) const;  ///< this option was
-  /// An option that was given: the first name that --help has for it, and its texts; none for a
-  /// flag.
+  /// An option that was given: its first name in --help, and its texts; none for a flag.
   struct Given {
     std::string name;
     std::vector<std::string> texts;
   };
   [[nodiscard]] std::vector<Given> all_given() const;
-  [[nodiscard]] std::string given_subcommand() const;          ///< "": none
+  [[nodiscard]] std::string given_subcommand() const;          ///< "" if none
   [[nodiscard]] std::vector<std::string> subcommands() const;  ///< those that --help lists
 
  private:
@@ -103,7 +100,7 @@ class Parser {
   [[nodiscard]] Option added(CLI::Option* option) const;
 
   std::shared_ptr<CLI::App> app_;
-  std::optional<std::string> heading_;  ///< of options that it adds
+  std::optional<std::string> heading_;  ///< for new options
 };
 
 }  // namespace rastrum::cli

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The program `rastrum-bench`, which `rastrum bench` starts: the benchmarks and their peers.
+// The program `rastrum-bench`, which `rastrum bench` starts.
 #include <cstdio>
 #include <exception>
 #include <string_view>

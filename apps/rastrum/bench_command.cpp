@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum bench NAME…`: hands the command line on to the program `rastrum-bench`, which has
-// options of its own and lies beside this one.
+// `rastrum bench NAME…`: passes the command line to the program `rastrum-bench` beside this one.
 #include <unistd.h>
 
 #include <cerrno>
@@ -16,7 +15,7 @@
 namespace rastrum::cli {
 namespace {
 
-/// Becomes that program; returns only by an exception.
+/// Returns only by an exception.
 int run(const std::vector<std::string>& arguments) {
   std::error_code unknown;
   const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", unknown);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The subcommands of the program. Each file adds its own to the parser and returns what runs it.
+// Each file adds its subcommand to the parser and returns the function that runs it.
 #pragma once
 
 #include <functional>
@@ -12,12 +12,12 @@
 namespace rastrum::cli {
 
 struct Command {
-  Parser parser;             ///< parsed() says whether this subcommand was given
+  Parser parser;             ///< parsed(): whether this subcommand was given
   std::function<int()> run;  ///< after parsing; returns the exit status
 };
 
-/// Where the program was started as one of several ranks, these; else null. `timeout_s`: how long
-/// one waits for others, 0: for ever. Throws Error{unsupported} where they cannot be had.
+/// The ranks if the program was started as one of several, else null. `timeout_s`: how long one
+/// waits for others, 0: for ever. Throws Error{unsupported} if MPI is not available.
 using StartRanks = std::function<std::unique_ptr<RanksOfProgram>(double timeout_s)>;
 [[nodiscard]] Command add_render_command(Parser& app, StartRanks start = {});
 [[nodiscard]] Command add_terrain_command(Parser& app);

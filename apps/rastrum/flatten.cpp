@@ -18,8 +18,8 @@ Vec3d transform_position(const Mat4d& a, Vec3d p) {
   return {q.x, q.y, q.z};
 }
 
-/// By the cofactors of the linear part: the inverse transpose times the determinant, which needs no
-/// division. A mirror keeps the normals' side, as it turns the winding.
+/// By the cofactors of the linear part: the inverse transpose times the determinant, without a
+/// division. A mirror keeps the normals' side, because it turns the winding.
 Vec3 transform_normal(const Mat4d& a, Vec3 n) {
   const auto cofactor = [&](int i, int j) {
     const int r0 = (i + 1) % 3, r1 = (i + 2) % 3, c0 = (j + 1) % 3, c1 = (j + 2) % 3;
@@ -46,7 +46,7 @@ void place(G& geometry, std::vector<Vec3>& normals, const Mat4d& a) {
   for (Vec3& n : normals) n = transform_normal(a, n);
 }
 
-/// Appends the positions of a mesh or cloud; in float64 where one of the two has such.
+/// In float64 if one of the two has such positions.
 template <class G>
 void join_positions(G& into, const G& from) {
   if (!into.wide_positions.empty() || !from.wide_positions.empty()) {
@@ -62,8 +62,7 @@ void join_positions(G& into, const G& from) {
   into.positions.insert(into.positions.end(), from.positions.begin(), from.positions.end());
 }
 
-/// Joins the scalars of two meshes, or clouds, where both have the same names. Returns whether any
-/// are lost.
+/// Keeps the scalars if both have the same names. Returns whether any are lost.
 bool join_scalars(std::vector<NamedScalars>& into, const std::vector<NamedScalars>& from) {
   const bool same = std::ranges::equal(
       into, from, [](const auto& a, const auto& b) { return a.name == b.name && a.per == b.per; });
@@ -80,7 +79,7 @@ struct Kept {
   bool normals = true, texcoords = true, colors = true, scalars = true;
 };
 
-/// Joins clouds. Keeps the attributes that all of them have.
+/// Keeps the attributes that all clouds have.
 Points joined(const std::vector<Points>& clouds, Kept& whole) {
   Points all;
   const auto have = [&](auto member) {
@@ -99,8 +98,8 @@ Points joined(const std::vector<Points>& clouds, Kept& whole) {
   return all;
 }
 
-/// Drops an attribute that the positions' indices cannot reach, or that the meshes before this one
-/// lack. `kept`: whether the result has it so far.
+/// Drops an attribute that the positions' indices cannot reach, or that earlier meshes lack.
+/// `kept`: whether the result has it so far.
 template <class T>
 void join(Attribute<T>& into, Attribute<T>& from, std::size_t positions, bool& kept, bool& lost) {
   const bool usable = from.indices.empty() && from.values.size() >= positions;

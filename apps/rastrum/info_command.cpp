@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum info FILE…`: what a file holds.
 #include <cstdio>
 #include <memory>
 #include <string>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The program `rastrum`: parses the command line, runs one subcommand, turns exceptions into one
-// line on stderr. Exit status: 0 done, 1 the outside world (files, devices, memory), 2 usage, and
-// by a signal (Ctrl-C, a pipe whose reader has gone) that signal.
+// The program `rastrum` runs one subcommand and turns exceptions into one line on stderr. Exit
+// status: 0 done, 1 the outside world (files, devices, memory), 2 usage, and after a signal
+// (Ctrl-C, a pipe whose reader has gone) that signal.
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -31,7 +31,7 @@ constexpr int kWorldError = 1, kUsageError = 2;
 
 int report(const char* what, int status) {
   rastrum::cli::leave_it_to_the_signal();
-  // All ranks were given the same wrong arguments, so only one reports them.
+  // All ranks got the same wrong arguments, so one reports them.
   if (status == kUsageError && rastrum::cli::started_as_further_rank()) return status;
   std::fprintf(stderr, "rastrum: error: %s\n", rastrum::io::shortened(what).c_str());
   return status;
@@ -45,7 +45,7 @@ int report_usage(const char* what, const rastrum::cli::Parser& app) {
   return kUsageError;
 }
 
-/// For a word that is no command: a mistyped one, or the file that was to be drawn.
+/// A word that is no command is a mistyped one, or a file.
 std::string not_a_command(std::string_view given, std::span<const std::string_view> commands) {
   const std::string word(given);
   std::error_code ignored;
@@ -57,7 +57,7 @@ std::string not_a_command(std::string_view given, std::span<const std::string_vi
          (meant.empty() ? "; there are " + rastrum::cli::joined(commands) : meant);
 }
 
-/// Flushes standard output; an error if its text has not arrived.
+/// Returns an error if standard output does not take its text.
 int flushed(int status) {
   const bool ok = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
   const std::string why = std::strerror(errno);
@@ -91,7 +91,7 @@ int main(int argc, char** argv) {
         rastrum::cli::add_make_command(app),
         rastrum::cli::add_bench_command(app),
     };
-    // The options of meshes and of terrains share names, so each has a parser of its own.
+    // Options of meshes and of terrains share names, so each has a parser.
     std::vector<std::string_view> args(argv + 1, argv + argc);
     const auto terrain = std::ranges::find(args, "--terrain");
     if (!args.empty() && args[0] == "view" && terrain != args.end()) {

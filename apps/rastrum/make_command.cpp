@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum make SHAPE -o FILE.ply`: procedural meshes and subdivided ones as files.
+// `rastrum make SHAPE -o FILE.ply`: procedural and subdivided meshes as files.
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -20,7 +20,7 @@
 namespace rastrum::cli {
 namespace {
 
-/// 4^12 triangles for one: what is beyond that no index can number.
+/// 4^12 triangles for one; beyond, no index can number them.
 constexpr int kMaxSubdivisions = 12;
 
 struct MakeArguments {
@@ -31,7 +31,7 @@ struct MakeArguments {
   bool quiet = false;
 };
 
-/// A name of the catalogue is a shape; anything else that looks like a path is a file.
+/// A name of the catalogue is a shape; what else looks like a path is a file.
 bool is_shape(const std::string& input) {
   const std::string name = input.substr(0, input.find_first_of("?@"));
   for (const shapes::ShapeInfo& shape : shapes::catalogue())

@@ -14,10 +14,10 @@
 namespace rastrum::cli {
 namespace {
 
-/// The number of ranks that a launcher tells the processes that it starts: Open MPI's mpirun,
-/// MPICH's and srun with PMI, srun with PMIx, whose number of ranks is Slurm's.
+/// The number of ranks that a launcher tells: Open MPI's mpirun, MPICH's and srun with PMI, srun
+/// with PMIx, where Slurm tells it.
 struct Launch {
-  const char* name;  ///< of the variable that says how many
+  const char* name;  ///< of the variable with the number
   int ranks;
 };
 
@@ -60,7 +60,7 @@ class StartedRanks final : public RanksOfProgram {
       refuse(launch, "its MPI knows of " + std::to_string(size) +
                          ": it was built with another MPI than the one that started it");
     }
-    // It draws one picture, for which making shared memory costs what it saves.
+    // For a single picture shared memory costs what it saves.
     ranks_.emplace(MPI_COMM_WORLD, timeout_s, io::abandon_files, false);
     MPI_Comm here = MPI_COMM_NULL;
     MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here);

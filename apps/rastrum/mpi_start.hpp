@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether the program was started as one of several ranks (mpirun, srun), and these ranks where it
-// was built with MPI.
+// The ranks that the program was started as (mpirun, srun).
 #pragma once
 
 #include <memory>
@@ -10,14 +9,14 @@
 
 namespace rastrum::cli {
 
-/// Whether a launcher says that this is not the first of its ranks.
+/// Whether a launcher started this as another than the first rank.
 [[nodiscard]] bool started_as_further_rank();
 
-/// Throws Error{unsupported} where it is one of several, each of which would write the same files.
+/// Throws Error{unsupported} if this is one of several ranks, which would all write the same files.
 void refuse_ranks(const std::string& why);
 
-/// As StartRanks (commands.hpp) has it: MPI begins here and ends with what is returned. Without MPI
-/// it refuses as refuse_ranks does.
+/// For StartRanks (commands.hpp): MPI ends with the returned object. Without MPI it calls
+/// refuse_ranks.
 [[nodiscard]] std::unique_ptr<RanksOfProgram> start_ranks(double timeout_s);
 
 }  // namespace rastrum::cli

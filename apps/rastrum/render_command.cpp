@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum render INPUT… -o OUT`: from the options (parse/) to what is drawn (job/), to its
-// pictures (frame/), to their files (files/).
+// `rastrum render INPUT… -o OUT`: options (parse/), then the job (job/), its pictures (frame/),
+// their files (files/).
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -22,16 +22,14 @@ void draw(Job&& job) {
   write_pictures(job, *frames_of(job));
 }
 
-/// As one of several ranks. If one fails, all do, and the first reports it. Returns the exit
-/// status.
+/// If one rank fails, all do, and the first reports it. Returns the exit status.
 int draw_part(const RenderArguments& a, RanksOfProgram& program) {
   try {
     draw(PartJob(a, program));
     return 0;
   } catch (const UsageError& e) {
-    // All ranks were given the same wrong arguments and know it, so only one reports it. It does so
-    // before MPI ends, since a launcher may kill a rank that is slower to end than another that has
-    // failed.
+    // All ranks got the same wrong arguments, so one reports them. It does so before MPI ends: a
+    // launcher may kill a rank that ends later than a failed one.
     if (program.ranks().rank() == 0)
       std::fprintf(stderr, "rastrum: error: %s\nSee rastrum render --help.\n", e.what());
     return 2;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Little may be called in a signal's handler, and locks not at all. So the handler only wakes a
-// thread, which may do anything.
+// A signal handler may call little and take no lock, so it only wakes a thread.
 #include "signals.hpp"
 
 #include <semaphore.h>

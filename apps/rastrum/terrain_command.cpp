@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum terrain (--height FILE | --function NAME) -o OUT`: the options, then check, load, light,
-// render, write.
 #include <algorithm>
 #include <cstdio>
 #include <functional>
@@ -46,9 +44,9 @@ struct TerrainArguments : TerrainSceneArguments, RunOptions {
   TerrainObjectArguments objects;
   GroundOptions ground;
   WordOptions words;
-  std::function<bool(const char*)> given;  ///< whether an option was
+  std::function<bool(const char*)> given;  ///< whether an option was given
 
-  /// The frame options of the ground and of what stands on it: lights, tone, environment.
+  /// The frame options of the ground and of the objects on it: lights, tone, environment.
   [[nodiscard]] FrameOptions& frame() { return objects.scene.render; }
   [[nodiscard]] const FrameOptions& frame() const { return objects.scene.render; }
   Output color, depth;
@@ -73,12 +71,11 @@ void check_path(const TerrainArguments& a) {
     throw UsageError("--frames", "leaves no room for --path: both say how many frames are drawn");
   if (a.color.is_film()) Mp4Writer::check(a.options.width, a.options.height);
   for (const Output* const output : {&a.color, &a.depth})
-    static_cast<void>(numbered(*output, 0, 1));  // throws for a spoilt %d
-  static_cast<void>(read_json(a.path));  // a spoilt file is refused before a large map is read
+    static_cast<void>(numbered(*output, 0, 1));  // throws for a wrong %d
+  static_cast<void>(read_json(a.path));          // refuses a wrong file before a large map is read
 }
 
-/// Throws where outputs cannot be written. Called again once the inputs have told which files they
-/// name.
+/// Throws if outputs cannot be written. Called again once the inputs have named their files.
 void check_files(const TerrainArguments& a) {
   const Output* const outputs[] = {&a.color, &a.depth, &a.stats};
   check_outputs(outputs, a.hash);
@@ -99,21 +96,19 @@ void check(TerrainArguments& a) {
   check_files(a);
 }
 
-/// A lit terrain, what draws it, and its pictures, with what is around it and what stands on it.
-/// Colours alone are timed, but for what needs the depth.
+/// A lit terrain and its pictures. Only colours are timed, and the depth if they need it.
 struct TerrainPictures {
   const TerrainArguments& arguments;
   const LoadedTerrain& source;
   LitGround& ground;
   terrain::TerrainRenderer& renderer;
-  TerrainObjects* objects;  ///< null: none
+  TerrainObjects* objects;  ///< may be null
   double load_ms, light_ms;
   Image<Rgba8> color{arguments.options.width, arguments.options.height};
   Image<float> depth = arguments.depth || needs_depth()
                            ? Image<float>(color.width(), color.height())
                            : Image<float>();
 
-  /// Whether a picture needs the depth of its ground.
   [[nodiscard]] bool needs_depth() const {
     return objects != nullptr || arguments.frame().environment_behind || arguments.ground.bounds;
   }
@@ -138,7 +133,7 @@ struct TerrainPictures {
     if (objects != nullptr) objects->draw(picture, stats);
     return stats;
   }
-  /// Requires draw() of the same frame, which leaves the depth where something needs it.
+  /// Requires draw() of the same frame, which fills the depth if something needs it.
   void write_depth(const terrain::TerrainCamera& camera, const Output& output, OutputFiles& files) {
     if (!needs_depth())
       renderer.render(ground.terrain(), camera, arguments.options, {.depth = depth.view()});
@@ -150,7 +145,7 @@ struct TerrainPictures {
                             ground.terrain(), numbers_of(arguments.ground, source),
                             arguments.options, camera, targets());
   }
-  /// `number`: of a picture of many.
+  /// `number`: of this picture among many.
   void print_hashes(std::optional<std::size_t> number) const {
     const TerrainArguments& a = arguments;
     if (!a.hash) return;
@@ -159,7 +154,6 @@ struct TerrainPictures {
   }
 };
 
-/// --stats.
 nlohmann::ordered_json terrain_stats(const TerrainPictures& pictures,
                                      std::vector<TerrainStats> frames) {
   const TerrainArguments& a = pictures.arguments;
@@ -194,7 +188,7 @@ nlohmann::ordered_json terrain_stats(const TerrainPictures& pictures,
   return json;
 }
 
-/// Along --path, or one.
+/// Along --path, or one camera.
 std::vector<terrain::TerrainCamera> cameras_of(const TerrainArguments& a,
                                                const terrain::TerrainCamera& base) {
   if (a.path.empty()) return {base};
@@ -212,7 +206,7 @@ void write_pictures(TerrainPictures& pictures, const std::vector<terrain::Terrai
   const TerrainArguments& a = pictures.arguments;
   const bool is_sequence = !a.path.empty();
   const std::size_t count = cameras.size();
-  // Names are refused before anything is drawn.
+  // Refuses names before anything is drawn.
   const Output* const of_pictures[] = {&a.color, &a.depth};
   const Output* const of_run[] = {&a.stats};
   if (is_sequence) check_numbered(of_pictures, of_run, count);
@@ -233,7 +227,7 @@ void write_pictures(TerrainPictures& pictures, const std::vector<terrain::Terrai
       frames.push_back(pictures.draw(cameras[i]));
     }
     pictures.annotate(frames.back().camera);
-    OutputFiles of_picture;  // of a sequence: seen as soon as it is drawn
+    OutputFiles of_picture;  // in a sequence, visible as soon as it is drawn
     OutputFiles& to = is_sequence ? of_picture : files;
     const auto named = [&](const Output& output) {
       return is_sequence ? numbered(output, i, count) : output;
@@ -290,7 +284,7 @@ int run(TerrainArguments& a) {
   const double load_ms = timeline.now_ms();
   progress.show("lighting");
   const terrain::TerrainCamera camera = camera_of(a, source);
-  // Far ground in fog becomes what is behind it.
+  // Far ground in fog takes the colour behind it.
   if (frame.environment_behind) a.options.sky = horizon_color(frame.lights, frame.tone, camera);
   LitGround ground(source, a.options, a.light, frame, camera);
   if (objects) {

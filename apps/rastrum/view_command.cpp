@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum view INPUT…` and `rastrum view --terrain …`: the window, where it has been built in.
+// `rastrum view INPUT…` and `rastrum view --terrain …`, if a window is built in.
 #include <functional>
 #include <memory>
 #include <span>
@@ -35,7 +35,7 @@ struct ViewTerrainArguments : TerrainSceneArguments {
   std::vector<std::string> maps;
   GroundShown shown;
   LightChoice lights;
-  std::function<bool(const char*)> is_given;  ///< whether an option was
+  std::function<bool(const char*)> is_given;  ///< whether an option was given
   WindowArguments window;
 };
 
@@ -151,7 +151,7 @@ Command add_view_command(Parser& app) {
   Parser view = app.add_subcommand(
       "view", "Look at meshes in a window, or fly over a terrain with --terrain");
   add_input_option(view, a)->required();
-  // main takes the command line of a terrain to view-terrain.
+  // main sends a terrain's command line to view-terrain.
   view.add_flag("--terrain", a.terrain, "fly over a terrain; see rastrum view --terrain --help");
   add_window_options(view, a.window);
   add_picture_options(view, a);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Draws a coloured tetrahedron through the C interface, writes the picture as a PPM file where a
-// name is given, and prints its digest, which is the same on every machine.
+// Draws a coloured tetrahedron through the C interface, writes a PPM file if a name is given, and
+// prints the picture's digest, which is the same on every machine.
 #include <stdio.h>
 #include <stdlib.h>
 

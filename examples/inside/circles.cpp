@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Circles without a triangle: any field with a sign is rasterized by the same masked expansion
-// (paper 1, section 4.4), and the nearest one of each pixel is found by a histogram of maxima.
+// (paper 1, section 4.4), and each pixel's nearest is found by a histogram of maxima.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// In situ on ranks of MPI: each has a strip of a surface, on which waves of two sources meet, and
-// all draw one picture of what lies in their memory. Any number of ranks writes the same files.
+// In situ on MPI ranks: each has a strip of a surface on which the waves of two sources meet, and
+// all draw one picture from their own memory. Any number of ranks writes the same files.
 #include <array>
 #include <cmath>
 #include <cstdint>

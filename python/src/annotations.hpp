@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Words, axes and effects over a picture, by name (rastrum/annotate.hpp).
 #pragma once
 
 #include "bindings.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Python's arrays as the renderer's views: pointer, type and stride, never a copy.
+// Python's arrays as the renderer's views, never a copy.
 #include <algorithm>
 #include <span>
 
@@ -47,7 +47,7 @@ std::string shape_of(const Array& array) {
   return s + (array.ndim() == 1 ? ",)" : ")");
 }
 
-/// `count` values of `channels` numbers, `stride` bytes apart, as a buffer that holds just them.
+/// `count` values of `channels` numbers, `stride` bytes apart, as a buffer of just these.
 struct ArrayBuffer {
   std::span<const std::byte> bytes;
   ArrayLayout layout;

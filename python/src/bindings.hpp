@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shared by the sources of the module: views of arrays, and the contents of Python's objects.
+// Shared by the sources of the module.
 #pragma once
 
 #include <cstddef>
@@ -23,21 +23,21 @@ namespace rastrum::python {
 
 namespace nb = nanobind;
 
-/// Any array in this process's memory; it is kept alive as long as this lives.
+/// Any array in this process's memory, which it keeps alive.
 using Array = nb::ndarray<nb::ro, nb::device::cpu>;
-/// One that is written.
+/// A writable one.
 using Output = nb::ndarray<nb::device::cpu>;
 
-/// The geometry that an instance draws, and the arrays that it views.
+/// An instance's geometry, and the arrays that it views.
 struct ArrayGeometry {
   std::shared_ptr<const GeometryView> view{};  ///< frames share it
   std::vector<Array> kept{};
   bool has_colors = false;
-  std::optional<PreparedMesh> prepared{};  ///< a mesh's, which the view shows then
+  std::optional<PreparedMesh> prepared{};  ///< of a mesh, which the view then shows
 };
 
-/// The value of an enum whose place in `names`, in its order, is `name`'s. Throws
-/// Error{invalid_argument} that begins with `what` and lists the names.
+/// The enum value at the place of `name` in `names`. Throws Error{invalid_argument} that begins
+/// with `what` and lists the names.
 template <class Enum, std::size_t N>
 [[nodiscard]] Enum named(const char* what, const std::string& name, const char* const (&names)[N]) {
   std::string all;
@@ -49,21 +49,21 @@ template <class Enum, std::size_t N>
               std::string(what) + ": there is no " + name + "; take one of " + all);
 }
 
-/// (N, channels) numbers, or (N,) for one channel, of any stride between values, as a view; nothing
-/// is copied. Throws Error{invalid_argument} that begins with `name`.
+/// (N, channels) numbers, or (N,) for one channel, of any stride, as a view; nothing is copied.
+/// Throws Error{invalid_argument} that begins with `name`.
 template <ViewedValue T>
 [[nodiscard]] ArrayView<T> values(const Array& array, const char* name);
 /// (N,) numbers of any type and stride, as a view.
 [[nodiscard]] ScalarView scalars(const Array& array, const char* name);
-/// Any shape of integers, read in C order: (N,), or (M, K) whose rows may be apart only where they
-/// are of one step.
+/// Any shape of integers, read in C order: (N,), or (M, K), whose rows may have gaps only if they
+/// have one stride.
 [[nodiscard]] IndexView indices(const Array& array, const char* name);
 /// Row-major (4, 4) or (3, 4) of float64.
 [[nodiscard]] Mat4d matrix(const Array& array, const char* name);
 
-/// While it lives, Ctrl-C asks the frame to stop, where Python's own handler would only note it.
-/// Works on the process's main thread; elsewhere it does nothing. Python's handler runs as well, so
-/// that PyErr_CheckSignals() says afterwards what it is to do.
+/// Ctrl-C asks the frame to stop, while Python's own handler would only note it. Works on the
+/// process's main thread only. Python's handler runs as well, so that PyErr_CheckSignals() can act
+/// on it afterwards.
 class StopOnInterrupt {
  public:
   StopOnInterrupt();

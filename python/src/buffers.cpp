@@ -19,8 +19,8 @@ struct FreeBuffer {
   std::size_t bytes;
 };
 
-/// Buffers that nobody uses, the newest last. Only touched under the GIL, so that a fork finds the
-/// list whole.
+/// Unused buffers, the newest last. Only touched under the GIL, so that a fork finds the list
+/// whole.
 class Free {
  public:
   void* take(std::size_t bytes) {

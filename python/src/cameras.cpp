@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cameras: ours, and those of others.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -56,9 +55,9 @@ Camera look_at(const Numbers3& eye, const Numbers3& target, const Numbers3& up, 
   const BoundingSphere scene = sphere(ball);
   c.near_plane =
       static_cast<float>(near ? *near : nearest_plane(c.eye, length(c.eye - c.target), scene));
-  // Ten radii beyond the scene's centre, so that things that move stay before the far plane.
+  // Ten radii beyond the scene's centre, so that moving things stay before the far plane.
   c.far_plane = static_cast<float>(far ? *far : length(c.eye - scene.centre) + 10 * scene.radius);
-  (void)world_to_clip(c, 1, 1);  // throws where a number is out of range
+  (void)world_to_clip(c, 1, 1);  // throws for a number out of range
   return c;
 }
 

@@ -11,7 +11,7 @@
 namespace rastrum::python {
 namespace {
 
-/// Pictures of up to so many pixels are drawn side by side, a thread each.
+/// Pictures up to this size are drawn side by side, a thread each.
 constexpr std::int64_t kSmall = 512 * 512;
 
 }  // namespace

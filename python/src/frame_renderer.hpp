@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A renderer that keeps its threads and scratch, and draws many small pictures side by side.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +22,8 @@ class FrameRenderer {
   explicit FrameRenderer(const RendererOptions& options)
       : options_(options), renderer_(options), scratch_(options) {}
 
-  /// A picture for each camera. `after`: called after each that is drawn alone, once after all that
-  /// are drawn side by side.
+  /// A picture per camera. `after`: called after each that is drawn alone, once after all that are
+  /// drawn side by side.
   std::vector<FrameStats> render(const SceneView& scene, const std::vector<Camera>& cameras,
                                  const FrameOptions& o, const std::vector<Wanted>& outputs,
                                  const Annotations* annotations, const std::stop_token& stop,
@@ -33,8 +32,7 @@ class FrameRenderer {
                            int x, int y) {
     return renderer_.pick(scene, camera, o, x, y);
   }
-  /// The renderer for frames of ranks, which are drawn in several passes. Only one thread may use
-  /// it at a time.
+  /// For frames of ranks, which take several passes. Only one thread may use it at a time.
   [[nodiscard]] Renderer& alone() { return renderer_; }
   [[nodiscard]] Annotator& annotator() { return scratch_.annotator; }
   /// A picture for each of `what`, one behind the other.
@@ -42,10 +40,8 @@ class FrameRenderer {
                  const std::stop_token& stop);
 
  private:
-  /// Draws picture i with the renderer and scratch that are given.
   using Draw = std::function<void(Renderer& by, Scratch& scratch, std::size_t i)>;
-  /// Draws small pictures side by side, a thread each, and others one after the other by all
-  /// threads.
+  /// Small pictures side by side, a thread each; others one after the other by all threads.
   void draw_all(std::size_t pictures, std::int64_t pixels, const Draw& draw,
                 const std::function<void()>& after);
 

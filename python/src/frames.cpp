@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Frames: their options by name, drawn into arrays; what is under a pixel; triangles in clip space.
+// Frames: options by name, arrays as targets; picking; triangles in clip space.
 #include <array>
 #include <cstdint>
 #include <cstdio>
@@ -58,7 +58,6 @@ Tone tone_named(const std::string& name) {
               "tone: there is no " + name + "; take none, reinhard, aces or neutral");
 }
 
-/// The value of an enum whose name this is.
 template <class Enum>
 Enum value_named(const char* what, const std::string& asked, std::initializer_list<Enum> all) {
   std::string names;
@@ -114,7 +113,7 @@ nb::dict stats_of(const FrameStats& s) {
   return d;
 }
 
-/// Draws again where a signal asked for a stop and Python's handler wants none.
+/// Draws again if a signal asked for a stop but Python's handler does not raise.
 template <class Draw>
 void interruptible(const Draw& draw) {
   for (;;) {
@@ -175,8 +174,8 @@ nb::object pick(FrameRenderer& renderer, const ArrayScene& scene, const Camera& 
   return d;
 }
 
-/// out: (N, H, W, 4) of float32. A picture for each of `positions`; with one of these and `ranges`,
-/// pairs (first triangle, number of them), for each range.
+/// out: (N, H, W, 4) of float32. A picture for each of `positions`; or for each of `ranges`, pairs
+/// (first triangle, number of triangles), of the first.
 void rasterize(FrameRenderer& renderer, const std::vector<Array>& positions, const Array& triangles,
                const std::vector<std::pair<std::uint64_t, std::uint64_t>>& ranges,
                const Output& out) {
@@ -218,7 +217,7 @@ void write_png(const std::string& file, const Array& pixels, int threads) {
       threads);
 }
 
-/// An io::AtomicFile for Python's own writers, which write to its descriptor.
+/// An io::AtomicFile for Python's own writers, which use its descriptor.
 class WholeFile {
  public:
   explicit WholeFile(const std::string& file) : file_(std::in_place, file) {}

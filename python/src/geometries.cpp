@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Geometries that can be drawn, as views of Python's arrays.
 #include <algorithm>
 #include <cstdint>
 #include <optional>
@@ -28,7 +27,7 @@ Per per_of(const std::string& name) {
   throw Error(Errc::invalid_argument, "per: " + name + " is none of vertex, corner, face and mesh");
 }
 
-/// Remembers what is viewed.
+/// Keeps the arrays alive that it views.
 struct Maker {
   ArrayGeometry made{};
 
@@ -57,7 +56,6 @@ struct Maker {
     view.scalars = take_scalars(scalars);
     return finish(view);
   }
-  /// Spheres and their kin.
   template <class View>
   ArrayGeometry finish(View view, const Maybe& radii, float radius, const Maybe& colors,
                        const Maybe& scalars) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Ctrl-C in a long frame; see bindings.hpp. The handler writes one atomic word and calls the
-// handler that was there (Python's, which notes the signal): both may be done in a signal's
-// handler.
+// earlier handler (Python's, which notes the signal). A signal handler may do both.
 #include <csignal>
 
 #include <unistd.h>
@@ -12,8 +11,7 @@ namespace rastrum::python {
 namespace {
 
 struct sigaction previous;
-// A frame looks at its token from time to time; nothing is ever registered with it, so that
-// request_stop() is an atomic write.
+// Frames poll their token and register nothing with it, so request_stop() is an atomic write.
 std::stop_source* volatile source = nullptr;
 
 void on_interrupt(int number, siginfo_t* info, void* context) {

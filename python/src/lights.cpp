@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Lights, and the environments that they are made of.
 #include <array>
 #include <string>
 #include <variant>

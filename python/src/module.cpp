@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The module `rastrum._rastrum`: what the C++ library has, for the package's own Python to name.
+// The module `rastrum._rastrum`: the C++ library for the package's own Python.
 #include <new>
 #include <string>
 
@@ -11,7 +11,7 @@
 namespace rastrum::python {
 namespace {
 
-/// The package's exceptions, by code (rastrum/_errors.py); each is the natural class, too.
+/// The package's exceptions by code (rastrum/_errors.py); each is also the natural class.
 const char* class_of(Errc code) {
   switch (code) {
     case Errc::invalid_argument:
@@ -29,7 +29,7 @@ const char* class_of(Errc code) {
     case Errc::no_device:
       return "DeviceError";
     case Errc::stopped:
-      break;  // is caught where frames are drawn
+      break;  // caught where frames are drawn
   }
   return "Error";
 }

@@ -9,15 +9,13 @@
 namespace rastrum::python {
 namespace {
 
-/// A picture of a batch in the array that is to hold it: (N, H, W) or (N, H, W, channels), in C
-/// order.
+/// A picture of the batch in its array: (N, H, W) or (N, H, W, channels), in C order.
 template <class T>
 ImageView<T> picture(const Output& array, std::size_t number, const FrameOptions& o) {
   const std::size_t pixels = static_cast<std::size_t>(o.width) * static_cast<std::size_t>(o.height);
   return {static_cast<T*>(array.data()) + number * pixels, o.width, o.height};
 }
 
-/// NumPy's type and the numbers of a pixel.
 template <class T>
 struct PixelType {
   using Number = float;
@@ -29,7 +27,7 @@ struct PixelType<Rgba8> {
   static constexpr int kChannels = 4;
 };
 template <>
-struct PixelType<std::int64_t> {  // where the numbers fit
+struct PixelType<std::int64_t> {  // if the numbers fit
   using Number = std::int32_t;
   static constexpr int kChannels = 1;
 };
@@ -61,7 +59,6 @@ const std::vector<OutputKind>& kinds() {
 
 }  // namespace
 
-/// Checks type and shape of what is to be filled.
 std::vector<Wanted> wanted(const std::map<std::string, Output>& outputs, std::size_t pictures,
                            const FrameOptions& o, std::uint64_t primitives) {
   std::vector<Wanted> all;

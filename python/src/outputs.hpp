@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The arrays that a frame fills, by the names that Python has for them.
+// The arrays that a frame fills, by their names in Python.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@
 
 namespace rastrum::python {
 
-/// The scratch of who draws one picture after the other.
+/// Scratch for pictures that are drawn one after the other.
 struct Scratch {
   explicit Scratch(const RendererOptions& o) : annotator(o.threads, o.isa) {}
 
@@ -31,7 +31,6 @@ struct OutputKind {
   std::string_view name;
   nb::dlpack::dtype type;
   int channels;
-  /// Lets the frame fill it.
   std::function<void(Targets&, const Output&, std::size_t number, const FrameOptions&)> attach;
 };
 
@@ -40,8 +39,8 @@ struct Wanted {
   Output array;
 };
 
-/// Checks type and shape of what is to be filled, (pictures, H, W) or (pictures, H, W, channels).
-/// Throws Error{invalid_argument} that names it.
+/// Checks type and shape of the arrays, (pictures, H, W) or (pictures, H, W, channels). Throws
+/// Error{invalid_argument} that names one.
 [[nodiscard]] std::vector<Wanted> wanted(const std::map<std::string, Output>& outputs,
                                          std::size_t pictures, const FrameOptions& o,
                                          std::uint64_t primitives);

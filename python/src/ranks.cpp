@@ -29,11 +29,10 @@
 namespace rastrum::python {
 namespace {
 
-// PyBUF_READ and PyBUF_WRITE, whose values are of the stable ABI; its headers have them from 3.11
-// on.
+// PyBUF_READ and PyBUF_WRITE: values of the stable ABI, whose headers have them from 3.11 on.
 constexpr int kRead = 0x100, kWrite = 0x200;
 
-/// Memory of the frame's as Python sees it, until the view is released.
+/// The frame's memory as Python sees it, until the view is released.
 class View {
  public:
   explicit View(std::span<std::byte> bytes) : View(bytes.data(), bytes.size(), kWrite) {}
@@ -44,8 +43,8 @@ class View {
   View(const View&) = delete;
   View& operator=(const View&) = delete;
   ~View() {
-    // Released, a view that Python code has kept reads no freed memory. A buffer taken from it that
-    // lives on cannot be taken back.
+    // A released view that Python code has kept reads no freed memory. A buffer taken from it
+    // cannot be taken back.
     if (view_.is_valid() && !PyErr_Occurred()) {
       PyObject* const done = PyObject_CallMethod(view_.ptr(), "release", nullptr);
       if (done == nullptr) PyErr_Clear();
@@ -125,7 +124,7 @@ namespace {
 
 struct sigaction before;
 volatile std::sig_atomic_t came = 0;
-// Only asked to stop in the handler, which is an atomic write: nothing is registered with it.
+// Nothing is registered with it, so a stop request in the handler is an atomic write.
 std::stop_source* volatile asked = nullptr;
 
 void on_deferred_interrupt(int) {
@@ -163,7 +162,7 @@ void DeferredInterrupt::raise() {
   if (!installed_) return;
   const bool is_there = came != 0;
   if (is_there) {
-    // The next frame has a stop of its own. No signal comes in between.
+    // The next frame has its own stop. No signal may come in between.
     sigset_t interrupt, others;
     sigemptyset(&interrupt);
     sigaddset(&interrupt, SIGINT);
@@ -173,7 +172,7 @@ void DeferredInterrupt::raise() {
     pthread_sigmask(SIG_SETMASK, &others, nullptr);
     PyErr_SetInterrupt();
   }
-  // This also handles signals that came just before raise() began.
+  // Also handles signals that came just before raise() began.
   if (PyErr_CheckSignals() != 0) throw nb::python_error();
 }
 
@@ -187,20 +186,20 @@ WordExchange exchange_named(const std::string& wanted) {
               "exchange: there is no " + wanted + "; take automatic, sparse, two_hops or shared");
 }
 
-/// Options that mpi.py passes for this rank's part of a picture.
+/// From mpi.py, for this rank's part of a picture.
 struct RanksFrame {
   RanksOptions options;
   std::vector<std::uint64_t> parts;
-  bool has_materials = false;  ///< some rank's scene
+  bool has_materials = false;  ///< on some rank
 };
 
-/// The statistics, or None where the frame was stopped, on all ranks alike.
+/// The statistics, or None on all ranks if the frame was stopped.
 nb::object render_parts(FrameRenderer& renderer, const nb::object& of, const ArrayScene& scene,
                         const Camera& camera, const FrameOptions& o,
                         const std::map<std::string, Output>& outputs, const RanksFrame& ranks,
                         const Annotations* annotations, const DeferredInterrupt& interrupt) {
   PythonRanks communicator(of);
-  // These two look at the rank's own arrays and may fail on it alone, so ranks agree on failures.
+  // These may fail on one rank alone, by its own arrays, so ranks agree on failures.
   ArrayScene::Shown shown;
   std::vector<Wanted> all;
   do_alike(communicator, "look at arrays", [&] {

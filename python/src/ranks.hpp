@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ranks of Python's: an object with the functions of a Communicator, over mpi4py or by itself.
+// Ranks in Python: an object with the functions of a Communicator, over mpi4py or by itself.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,9 @@
 
 namespace rastrum::python {
 
-/// A Communicator whose functions are those of a Python object (rastrum/mpi.py has them). So the
-/// module links no MPI, and ranks are of whatever MPI that object has. Its functions are called
-/// under the GIL, which the rest of a frame does without; buffers are memoryviews of the frame's
-/// own memory, which end with the call.
+/// A Communicator of a Python object's functions (rastrum/mpi.py). So the module links no MPI, and
+/// any MPI of that object will do. The functions are called under the GIL, which the rest of a
+/// frame does without. Buffers are memoryviews of the frame's memory, which end with the call.
 class PythonRanks final : public Communicator {
  public:
   explicit PythonRanks(nb::object ranks);
@@ -34,15 +33,14 @@ class PythonRanks final : public Communicator {
   int rank_ = 0, size_ = 1;
 };
 
-/// Handles Ctrl-C while a frame of ranks is drawn. The signal is noted and asks the frame to stop;
-/// Python's own handler runs only when raise() is called, or at the end. So no exception comes in
-/// the middle of an exchange, where other ranks would wait for ever. Works on the main thread;
-/// elsewhere it does nothing.
+/// Ctrl-C while a frame of ranks is drawn: it is noted and asks the frame to stop. Python's own
+/// handler runs only in raise(), or at the end. So no exception interrupts an exchange, where other
+/// ranks would wait for ever. Works on the main thread only.
 class DeferredInterrupt {
  public:
   void enter();
   void exit();
-  /// Calls the handler that was there, if Ctrl-C came, and throws what it raises.
+  /// If Ctrl-C came, calls the earlier handler and throws what it raises.
   void raise();
   [[nodiscard]] std::stop_token token() const { return stop_.get_token(); }
 

@@ -10,7 +10,6 @@
 namespace rastrum::python {
 namespace {
 
-/// Nothing is shaded, so nothing is interpolated.
 struct Nothing {
   Nothing operator+(const Nothing&) const { return {}; }
   Nothing operator*(float) const { return {}; }
@@ -20,7 +19,7 @@ struct Nothing {
 
 void ClipRasterizer::draw(Renderer& by, const ClipTriangles& what, ImageView<Vec4> into,
                           std::stop_token stop) {
-  // Our weights are those of the second and the third corner.
+  // Rastrum's weights are those of the second and the third corner.
   constexpr std::size_t kCornerOf[3] = {2, 0, 1};
   corners_.resize(what.count * 3);
   for (std::size_t t = 0; t < what.count; ++t)
@@ -40,7 +39,7 @@ void ClipRasterizer::draw(Renderer& by, const ClipTriangles& what, ImageView<Vec
   ids_.resize(pixels);
   depth_.resize(pixels);
   weights_.resize(pixels);
-  // y turned, so that row 0 is the lowest; depth reversed.
+  // y is flipped, so that row 0 is the lowest; depth is reversed.
   const Program program(
       [&](std::uint32_t i) {
         const Vec4 p = what.positions[i];
@@ -48,7 +47,7 @@ void ClipRasterizer::draw(Renderer& by, const ClipTriangles& what, ImageView<Vec
       },
       [](const Nothing&, const Fragment&) { return Vec4{}; });
   ProgramDraw draw = program.draw(what.positions.size(), corners_);
-  draw.primitive_count = what.count;  // no indices would be all vertices in order
+  draw.primitive_count = what.count;  // without indices all vertices would be drawn in order
   FrameOptions frame;
   frame.width = into.width;
   frame.height = into.height;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Triangles in clip space as nvdiffrast's users know them: four numbers a pixel.
+// Triangles in clip space as in nvdiffrast: four numbers per pixel.
 #pragma once
 
 #include <cstddef>
@@ -20,12 +20,12 @@ struct ClipTriangles {
   std::size_t first = 0, count = 0;
 };
 
-/// Keeps what a picture is made of from one to the next.
+/// Reuses its memory from picture to picture.
 class ClipRasterizer {
  public:
-  /// Fills (u, v, z/w, number of the triangle + 1), the weights of the first and the second corner;
-  /// zeros where nothing is. Row 0 is that of y = −w. Throws Error{invalid_argument} for an index
-  /// that has no position.
+  /// Fills (u, v, z/w, number of the triangle + 1), with the weights of the first and the second
+  /// corner; zeros where nothing is. Row 0 is at y = −w. Throws Error{invalid_argument} for an
+  /// index without a position.
   void draw(Renderer& by, const ClipTriangles& what, ImageView<Vec4> into, std::stop_token stop);
 
  private:

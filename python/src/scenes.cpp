@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scenes; see the header.
 #include "scenes.hpp"
 
 #include <array>
@@ -26,7 +25,7 @@
 namespace rastrum::python {
 namespace {
 
-/// The beginning of a shape's name in the place of a file, as in the program.
+/// Begins a shape's name in place of a file.
 constexpr std::string_view kBuiltin = "builtin:";
 
 using Numbers4 = std::array<double, 4>;
@@ -85,7 +84,7 @@ ScalarMapping mapping(const std::vector<Numbers4>& colors, bool discrete,
   m.isolines = isolines;
   m.isoline_color = vec4(isoline_color);
   m.isoline_px = static_cast<float>(isoline_px);
-  (void)ScalarColors(m, {1, 2});  // throws where a field is wrong, whatever the numbers are
+  (void)ScalarColors(m, {1, 2});  // throws for a field that is wrong for any numbers
   return m;
 }
 
@@ -147,7 +146,7 @@ void ArrayScene::add_texture(const Array& pixels) {
       texture.image(x, y) = {channel(0), channel(1), channel(2),
                              pixels.shape(2) == 4 ? channel(3) : std::uint8_t{255}};
     }
-  // A frame may be drawing with the textures that exist.
+  // A frame may be using the textures that exist.
   if (textures_.use_count() > 1) textures_ = std::make_shared<std::vector<Texture>>(*textures_);
   textures_->push_back(std::move(texture));
   has_changed();
@@ -191,14 +190,14 @@ struct ArrayScene::Bound {
 
   SceneBinding binding;
   std::vector<Material> materials{};
-  std::vector<Texture> all_textures{};  ///< those of files and of Python, where both have some
+  std::vector<Texture> all_textures{};  ///< of files and Python, if both have some
   std::shared_ptr<const std::vector<Texture>> of_python{};
   std::vector<ScalarMapping> mappings{};
   std::span<const Texture> textures{};
-  std::uint32_t first_material = 0;  ///< of Python's
+  std::uint32_t first_material = 0;  ///< of Python
   bool beside_materials = false;
-  bool any_materials = false;   ///< then instances without one get a plain one
-  std::uint32_t plain[2] = {};  ///< without colours, with some
+  bool any_materials = false;   ///< then instances without a material get a plain one
+  std::uint32_t plain[2] = {};  ///< without colours, with colours
   bool plain_files = false;
 };
 
@@ -223,7 +222,7 @@ std::shared_ptr<const ArrayScene::Bound> ArrayScene::bind(bool beside_materials)
   b.textures = !b.all_textures.empty() ? b.all_textures
                : textures_->empty()    ? files_.textures
                                        : *textures_;
-  // Beside what has a material, what has none looks as it did without.
+  // Plain materials keep the look of things without a material beside others.
   b.any_materials = beside_materials || !b.materials.empty();
   if (b.any_materials) {
     b.plain[0] = static_cast<std::uint32_t>(b.materials.size());
@@ -231,7 +230,7 @@ std::shared_ptr<const ArrayScene::Bound> ArrayScene::bind(bool beside_materials)
     b.plain[1] = b.plain[0] + 1;
     b.materials.push_back(plain_material(true));
   }
-  // A file without materials drawn beside others was given some by append(); alone it has none.
+  // append() gives plain materials to a file without any beside others; a file alone has none.
   b.plain_files = b.any_materials && files_.materials.empty();
   b.mappings = mappings_;
   return bound;

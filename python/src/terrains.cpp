@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Terrains: height maps that are lit once and drawn from where one stands.
+// Height maps that are lit once and drawn from any place.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -38,7 +38,7 @@ using Rgb = std::array<std::uint8_t, 3>;
 constexpr double kRadians = std::numbers::pi / 180;
 constexpr std::size_t kMostCells = 1U << 20U;  // along a side
 
-/// An image of what Python has made C-contiguous.
+/// A copy of a C-contiguous array.
 template <class T>
 Image<T> image(const Array& array, const char* what) {
   if (array.shape(0) == 0 || array.shape(1) == 0 || array.shape(0) > kMostCells ||
@@ -51,7 +51,6 @@ Image<T> image(const Array& array, const char* what) {
   return made;
 }
 
-/// A lit map, and how it is sampled.
 struct LitTerrain {
   terrain::Terrain map;
   terrain::Sun sun;
@@ -59,13 +58,12 @@ struct LitTerrain {
   terrain::Tiling tiling;
   int width, height;
   double low, high;
-  GroundLights ground;  ///< without lights: the sun's
-  /// The heights of a map under lights of the camera, which is lit again for each picture; else
-  /// empty.
+  GroundLights ground;  ///< without lights the sun's
+  /// The heights if lights move with the camera, so that each picture is lit anew; else empty.
   terrain::HeightMap unlit{};
   ScalarMapping mapping{};
   std::optional<ScalarColors> numbers{};  ///< none: heights are not shown as numbers
-  double cells_a_unit = 1;                ///< how many cells one of the numbers given is high
+  double cells_a_unit = 1;                ///< the height of one given unit
   int threads = 0;
 
   [[nodiscard]] GroundNumbers meaning() const {
@@ -74,8 +72,7 @@ struct LitTerrain {
   [[nodiscard]] terrain::ShadowOptions by() const { return {tiling, Device::threads, threads, {}}; }
 };
 
-/// The heights in cells, each number that was given so many. Under the sun, or lights where there
-/// are any.
+/// Heights become cells by `cells_a_unit`. Lit by the sun, or by `lights` if there are any.
 LitTerrain lit_map(terrain::HeightMap map, double cells_a_unit, const std::array<double, 2>& sun,
                    const std::string& shadows, double ambient, double sun_radius_deg,
                    const std::string& filter, const std::string& tiling, int threads,
@@ -150,7 +147,6 @@ LitTerrain lit_map(terrain::HeightMap map, double cells_a_unit, const std::array
           threads};
 }
 
-/// As `camera` sees it.
 terrain::Terrain seen_from(const LitTerrain& t, TerrainCamera camera, const TerrainOptions& o) {
   if (t.unlit.heights.empty()) return t.map;
   if (o.ground_clearance)
@@ -160,7 +156,7 @@ terrain::Terrain seen_from(const LitTerrain& t, TerrainCamera camera, const Terr
   return t.map.with_colors(lit_colors(t.unlit, ground, t.by()));
 }
 
-/// As the program has them. Returns how many cells a unit is high.
+/// Scales heights to cells. Returns how many cells a unit is high.
 double in_cells(Image<float>& heights, double scale) {
   const auto factor = static_cast<float>(scale);
   if (!(std::isfinite(factor) && factor != 0))
@@ -206,8 +202,7 @@ LitTerrain lit_file(const std::string& file, const std::optional<std::string>& c
                  tiling, threads, lights, tone, exposure, mapping);
 }
 
-/// The camera, with defaults for everything that is not given: over the south of the map, looking
-/// down on all of it.
+/// The defaults look from the south down on all of the map.
 TerrainCamera camera(const LitTerrain& t, int rows, const std::optional<std::array<double, 2>>& at,
                      const std::optional<double>& altitude, double angle_deg,
                      const std::optional<double>& horizon_px, double roll_deg) {
@@ -272,7 +267,7 @@ class TerrainDrawer {
       try {
         const nb::gil_scoped_release unlock;
         const terrain::Terrain map = seen_from(t, from, o);
-        // Far ground in fog becomes what is behind it.
+        // Far ground in fog takes the colour behind it.
         if (environment_behind) o.sky = horizon_color(t.ground.lights, t.ground.tone, from);
         terrain::TerrainStats stats = renderer_.render(map, from, o, targets, interrupt.token());
         if (environment_behind)

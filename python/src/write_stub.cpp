@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Writes _outputs.pyi, the types of a picture's outputs for type checkers and editors, which read
-// no module. The names are the table of targets'.
+// Writes _outputs.pyi: the types of a picture's outputs, for type checkers and editors, which do
+// not import the module. Names come from the table of targets.
 #include <cstdint>
 #include <cstdio>
 #include <string>

@@ -14,18 +14,17 @@ namespace rastrum::terrain {
 
 class DeviceRenderer;  // cuda/device.hpp
 
-/// The functions that draw such frames, and all else that a renderer needs of a method.
+/// Everything that a renderer needs of such a method.
 struct AddedMethod {
   Counts (*on_serial)(parallel::Serial& exec, const Samples& samples,
                       const TerrainTargets& targets) = nullptr;
   Counts (*on_threads)(parallel::Threads& exec, const Samples& samples,
                        const TerrainTargets& targets) = nullptr;
-  /// A renderer that draws frames of every method. Throws Error{no_device}.
+  /// Its renderer draws frames of every method. Throws Error{no_device}.
   std::unique_ptr<DeviceRenderer> (*make_device_renderer)() = nullptr;
-  /// Bytes of a device's memory that it takes beyond those of every frame.
+  /// Device memory in bytes beyond what every frame takes.
   std::uint64_t (*device_bytes)(std::uint64_t slices) = nullptr;
-  /// Turns the estimated cost of a frame of Rastrum's own method into that of this one, for
-  /// Device::automatic.
+  /// For Device::automatic: turns the estimated cost of Rastrum's own method into this one's.
   void (*weigh)(FrameWork& work) = nullptr;
 };
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Blocks of columns on threads: where the samples of a block leave their marks, and how marks
-// become rows of the picture.
+// Blocks of columns on threads: their samples leave marks, which then become rows of the picture.
 #pragma once
 
 #include <atomic>
@@ -14,13 +13,12 @@
 
 namespace rastrum::terrain {
 
-/// A mark is a colour (or a distance's bits) in the first row that a sample shows in; 0 is none,
-/// which no opaque colour and no distance is. Between frames all are 0.
+/// A colour (or a distance's bits) in the first row that a sample shows in. 0 is no mark: no opaque
+/// colour and no distance is 0. Between frames all are 0.
 class BlockMarks {
  public:
   explicit BlockMarks(MemoryAccount& account) : colors_(account), depths_(account) {}
 
-  /// For pictures `height` rows high, with distances or without.
   void prepare(int height, bool colors, bool depths) {
     const std::size_t n = static_cast<std::size_t>(height) * kBlockColumns;
     const auto grow = [n](ScratchBuffer<std::uint32_t>& marks) {
@@ -34,7 +32,7 @@ class BlockMarks {
     with_depths_ = depths;
   }
 
-  /// Marks of the `n` samples that `block` lists: the colours of their cells, made opaque.
+  /// The colours of the cells become opaque.
   void put_cells(const ColumnBlock& block, std::size_t n, const Rgba8* cells) {
     if (!with_colors_) return;
     for (std::size_t i = 0; i < n; ++i)
@@ -53,14 +51,13 @@ class BlockMarks {
       depths_[static_cast<std::size_t>(block.mark[i])] = std::bit_cast<std::uint32_t>(depth);
   }
 
-  /// Writes columns [first, first + n) of the targets and forgets the marks.
+  /// Writes columns [first, first + n) and clears the marks.
   void resolve(const Kernels& kernels, std::size_t first, std::size_t n, int height, Rgba8 sky,
                const TerrainTargets& targets) {
     const auto write = [&](ScratchBuffer<std::uint32_t>& marks, const auto& view,
                            std::uint32_t empty) {
       alignas(64) std::uint32_t above[kBlockColumns];
       std::fill_n(above, kBlockColumns, empty);
-      // Pixels are 32 bits, whatever they mean.
       auto* out = reinterpret_cast<std::uint32_t*>(view.data + first);
       const bool aligned = reinterpret_cast<std::uintptr_t>(out) % 64 == 0 && view.stride % 16 == 0;
       kernels.fill(marks.data(), 0, height, n, above, out, view.stride, aligned);
@@ -77,15 +74,14 @@ class BlockMarks {
   ScratchBuffer<std::uint32_t> colors_, depths_;
 };
 
-/// The marks of each thread, kept between frames.
 struct BlockPool {
   explicit BlockPool(MemoryAccount& account) : marks([&account] { return BlockMarks(account); }) {}
   parallel::ScratchPool<BlockMarks> marks;
 };
 
-/// How columns fall into blocks. The first one is short where that lets the rows of all others
-/// begin on a cache line, so that they can be streamed: a quarter less time at 1080p and
-/// half at 2160p (least of alternating runs, on a busy machine).
+/// The first block is shorter if the rows of all others can then begin on a cache line and be
+/// streamed: a quarter less time at 1080p and half at 2160p (least of alternating runs, on a busy
+/// machine).
 struct Blocks {
   std::size_t columns, lead, count;
 

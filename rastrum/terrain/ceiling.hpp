@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An upper bound of the heights in a rectangle of a map, from maxima of 16 × 16 cells and coarser:
-// what lies under it need not be sampled where all of it would stay hidden. On hills most samples
-// are; 88 % of a frame's here.
+// An upper bound of the heights in a rectangle of a map, from maxima of 16 × 16 cells and coarser.
+// No sample is taken where even the bound is hidden; on hills that skips 88 % of a frame's.
 #pragma once
 
 #include <cstddef>
@@ -15,13 +14,12 @@
 
 namespace rastrum::terrain {
 
-/// Whole cells, ends included, before tiling.
+/// Before tiling; `last` is included.
 struct CellRange {
   std::int64_t first, last;
 };
 
-/// The cell of the level above that stands for `edge` × `edge` of `fine`: the highest of them, −inf
-/// where all are holes.
+/// The highest of `edge` × `edge` cells of `fine`, −inf if all are holes.
 struct HighestCell {
   ImageView<const float> fine;
   int edge;
@@ -29,27 +27,26 @@ struct HighestCell {
     float highest = -std::numeric_limits<float>::infinity();
     for (int v = y * edge; v < (y + 1) * edge && v < fine.height; ++v)
       for (int u = x * edge; u < (x + 1) * edge && u < fine.width; ++u)
-        highest = fine(u, v) > highest ? fine(u, v) : highest;  // not with NaN
+        highest = fine(u, v) > highest ? fine(u, v) : highest;  // false for NaN
     return highest;
   }
 };
 
-/// The levels, wherever they lie.
 struct CeilingView {
   static constexpr int kFirstLevel = 4;
   std::span<const ImageView<const float>> levels;  ///< of cells of 2⁴, 2⁵, …
   int width = 0, height = 0;                       ///< of the map
-  int first_level = kFirstLevel;                   ///< of the list: its cells are of 2^first_level
+  int first_level = kFirstLevel;                   ///< of the list: cells of 2^first_level
 
   /// No height in x × y of the tiled map exceeds it; −inf where all are holes. At most 25 reads.
   [[nodiscard]] RASTRUM_HD float over(CellRange x, CellRange y, Tiling tiling) const;
-  /// The same by cells of the list's `level` alone.
+  /// The same from one level of the list.
   [[nodiscard]] RASTRUM_HD float on_level(int level, CellRange x, CellRange y, Tiling tiling) const;
 };
 
 class Ceiling {
  public:
-  /// O(cells), once a map.
+  /// O(cells), once per map.
   explicit Ceiling(Shared<const Image<float>> heights);
   Ceiling(Ceiling&&) = default;
   Ceiling& operator=(Ceiling&&) = default;
@@ -69,8 +66,8 @@ class Ceiling {
 
 namespace ceiling_detail {
 
-/// The cells of a map that a range falls on: one piece, or two where it runs over the end of a map
-/// that repeats. `size` cells in all.
+/// The cells that a range covers on an axis of `size` cells: two pieces if it runs over the end of
+/// a map that repeats.
 struct Pieces {
   CellRange at[2];
   int count;
@@ -86,7 +83,7 @@ struct Pieces {
     if (a <= b) return one(a, b);
     return {{{a, size - 1}, {0, b}}, 2};
   }
-  // Mirrored: up to an edge and back, or within one image of the map, either way round.
+  // The range turns at an edge, or lies within one image of the map in either direction.
   const std::int64_t period = 2 * size, from = tiled(r.first, period, Tiling::repeat),
                      to = tiled(r.last, period, Tiling::repeat);
   const std::int64_t low = a < b ? a : b, high = a < b ? b : a;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which cell of a map, and which texel of its colours, a point lies on: float64, unfiltered, on any
-// device.
+// The cell of a map, and the texel of its colours, at a point: float64, unfiltered, on any device.
 #pragma once
 
 #include <cmath>
@@ -11,13 +10,12 @@
 namespace rastrum::terrain {
 
 [[nodiscard]] RASTRUM_HD inline std::int64_t cell_at(double at, int size, Tiling tiling) {
-  // Beyond 2⁵² there are no cells to tell apart, and int64 has to hold what is given.
+  // int64 cannot hold all floors. Beyond 2⁵² float64 has no fractions anyway.
   const double floor = std::floor(at);
   const double held = floor < -0x1p52 ? -0x1p52 : floor > 0x1p52 ? 0x1p52 : floor;
   return tiled(static_cast<std::int64_t>(held), size, tiling);
 }
 
-/// The texel under the point along one axis, where a cell has several or a part of one.
 [[nodiscard]] RASTRUM_HD inline int texel_at(double at, int cells, int texels, Tiling tiling) {
   const std::int64_t cell = cell_at(at, cells, tiling);
   if (texels == cells) return static_cast<int>(cell);

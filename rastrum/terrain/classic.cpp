@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The original program (Macke's, paper 3, section 2.3), bit for bit: float64 throughout, positions
-// accumulated along a slice, 240 rows whatever the resolution, heights truncated toward zero.
-// A map of another size than 1024² repeats, mirrors or ends by the floor of the coordinates. Holes
+// accumulated along a slice, 240 rows at every resolution, heights truncated toward zero. Holes
 // draw nothing.
 //
-// On threads, a block of columns needs the position of each slice at its first column, so those
-// are accumulated first; a block accumulates on from there, eight slices side by side.
+// On threads, each slice's position at the first column of each block is accumulated first. A block
+// accumulates on from there, eight slices side by side.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -35,8 +34,7 @@ std::vector<ClassicLine> classic_lines(const TerrainOptions& options, const Terr
 
 namespace {
 
-/// The lines as arrays, with as many more that go nowhere as fill the last group; and the positions
-/// at the first column of each block.
+/// The lines as arrays, padded to whole groups with lines that go nowhere.
 struct Table {
   std::vector<double> dx, dy, x, y;
   std::vector<double> lowest_row;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The slices of the original program, and what its samples can see at most, on any device.
+// The slices of the original program, on any device.
 #pragma once
 
 #include <cmath>
@@ -21,13 +21,13 @@ struct ClassicLine {
 [[nodiscard]] std::vector<ClassicLine> classic_lines(const TerrainOptions& options,
                                                      const TerrainCamera& camera);
 
-/// The cells along one axis of n columns on slices that begin at a, with steps of step_a, to b.
+/// The cells along one axis that n columns reach on slices that begin between a and b.
 [[nodiscard]] RASTRUM_HD inline CellRange classic_range(double a, double step_a, double b,
                                                         double step_b, std::size_t n) {
   const double c = a + step_a * static_cast<double>(n), d = b + step_b * static_cast<double>(n);
   const auto lesser = [](double p, double q) { return q < p ? q : p; };
   const auto greater = [](double p, double q) { return p < q ? q : p; };
-  // One more on each side, for what accumulating rounds.
+  // One more on each side, for the rounding of accumulated positions.
   return {static_cast<std::int64_t>(std::floor(lesser(lesser(a, b), lesser(c, d)))) - 1,
           static_cast<std::int64_t>(std::floor(greater(greater(a, b), greater(c, d)))) + 1};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Colours for heights that have none, and the light of a hillside.
+// Colours for heights that have none, and hill shading.
 #pragma once
 
 #include <cmath>
@@ -12,12 +12,10 @@
 
 namespace rastrum::terrain {
 
-/// From lowland (t = 0) to snow (t = 1), clamped; NaN is 0. Hypsometric hues whose lightness rises
-/// evenly (CIE L* from 30 to 97), so that equal steps of height look equal and a print in grey
-/// still shows them.
+/// From lowland (t = 0) to snow (t = 1), clamped; NaN is 0. The lightness of the hypsometric hues
+/// rises evenly (CIE L* from 30 to 97): equal steps of height look equal, also printed in grey.
 [[nodiscard]] RASTRUM_HD inline Rgba8 height_color(double t) {
-  // Display values at equal steps of t; found by walking L* = 30 + 67 t in CIE Lab through these
-  // hues.
+  // Display values at equal steps of t, found by walking L* = 30 + 67 t in CIE Lab.
   constexpr std::size_t kHues = 8;
   constexpr double kHypsometric[kHues][3] = {{36, 79, 56},    {61, 100, 60},   {94, 121, 68},
                                              {139, 138, 82},  {181, 157, 105}, {208, 181, 143},
@@ -33,7 +31,7 @@ namespace rastrum::terrain {
   return {channel(0), channel(1), channel(2), 255};
 }
 
-/// height_color of each height between the lowest and the highest; holes are black.
+/// Colours between the lowest and the highest height; holes are black.
 [[nodiscard]] Image<Rgba8> colors_by_height(ImageView<const float> heights);
 
 /// The unit vector to the sun: east, south, up.
@@ -41,29 +39,26 @@ struct ToSun {
   float x = 0, y = 0, z = 1;
   static ToSun of(const Sun& sun);
   /// The share of the sun's light that a slope reflects: ambient + (1 − ambient) · max(0, cosine
-  /// between the normal and the sun). `dx`, `dy`: change of the height over a cell to the east and
-  /// to the south.
+  /// between the normal and the sun). `dx`, `dy`: slope to the east and to the south.
   [[nodiscard]] RASTRUM_HD float shade(float dx, float dy, float ambient) const {
     const float cosine = (z - dx * x - dy * y) / std::sqrt(1 + dx * dx + dy * dy);
     return ambient + (1 - ambient) * (cosine > 0 ? cosine : 0);
   }
 };
 
-/// The slopes of a map at its cells: central differences within the tiled map. A hole next to a
-/// cell counts as the cell's own height.
+/// Central differences within the tiled map. A hole beside a cell counts as the cell's own height.
 struct Slopes {
   ImageView<const float> heights;
   Tiling tiling = Tiling::repeat;
 
-  /// Change of the height over a cell to the east and to the south, at a cell that is no hole.
+  /// Slope to the east and to the south, at a cell that is no hole.
   [[nodiscard]] Vec2 at(int x, int y) const;
 };
 
-/// ToSun::shade of each cell, by its Slopes; 0 in holes.
+/// ToSun::shade of each cell; 0 in holes.
 [[nodiscard]] Image<float> hill_shading(ImageView<const float> heights, const Sun& sun,
                                         float ambient, Tiling tiling);
 
-/// The pixel that a cell shows for the colour of its number; opaque.
 [[nodiscard]] Rgba8 shown(Vec4 display);
 
 }  // namespace rastrum::terrain

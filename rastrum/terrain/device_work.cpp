@@ -9,13 +9,13 @@
 namespace rastrum::terrain {
 namespace {
 
-// Times of one thread, for a column's slice and for a pixel: within a third of
-// docs/log/terrain.md's table from 800×450 to 3840×2160.
+// Times of one thread, per slice of a column and per pixel: within a third of docs/log/terrain.md's
+// table from 800×450 to 3840×2160.
 constexpr double kHostSlice_ns = 0.4, kHostPixel_ns = 0.7;
-// Times of an A100, guessed: eight bytes a slice and a pixel at 1.5 TB/s.
+// Guessed for an A100: eight bytes per slice and pixel at 1.5 TB/s.
 constexpr double kDeviceSlice_ns = 0.005, kDevicePixel_ns = 0.005;
 constexpr std::uint64_t kLaunches = 8;
-/// How many frames share the copy of a map: fewer than a flight has, more than one picture.
+/// Frames that share one copy of a map: fewer than a flight has, but more than one.
 constexpr std::uint64_t kFramesOfMap = 16;
 
 }  // namespace
@@ -29,7 +29,7 @@ FrameWork device_work(const Terrain& map, const TerrainOptions& options,
                       const TerrainTargets& targets) {
   const std::uint64_t pixels =
       static_cast<std::uint64_t>(options.width) * static_cast<std::uint64_t>(options.height);
-  // A slice of a function costs more than one of a map, on either; how much more is not known.
+  // A slice of a function costs more than one of a map; how much more is not known.
   const double slices = std::min(slice_count(options), static_cast<double>(kMaxSlices)) *
                         static_cast<double>(options.width);
   const auto p = static_cast<double>(pixels);

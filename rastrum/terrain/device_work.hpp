@@ -7,11 +7,10 @@
 
 namespace rastrum::terrain {
 
-/// The bytes of a map's heights and colours; 0 for a function.
+/// Heights and colours; 0 for a function.
 [[nodiscard]] std::uint64_t map_bytes(const Terrain& terrain);
 
-/// Estimates a map in steady flight: the device keeps it, so a frame carries a small share of its
-/// copy. `targets`: which images come back.
+/// The device keeps the map, so a frame of a steady flight pays a small share of its copy.
 [[nodiscard]] FrameWork device_work(const Terrain& map, const TerrainOptions& options,
                                     const TerrainTargets& targets);
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Expressions through muParser. A parser holds the values of its variables, so each thread has
-// one of its own. Without the library at build time the function says what to install.
+// Expressions through muParser. A parser holds the values of its variables, so each thread has its
+// own.
 //
-// muParser reads the formula, and what it computes with is ours: its functions are a libm's, and
-// built for ARM its own operators may be fused, so neither has the same bits everywhere.
+// muParser only parses: its functions are a libm's, and its operators may be fused on ARM, so
+// neither has the same bits everywhere.
 #include <rastrum/terrain_light.hpp>
 
 #include <rastrum/core/number_text.hpp>
@@ -32,7 +32,7 @@ double power(double x, double y) {
   if (y == 4) return x * x * x * x;
   return elementary::pow(x, y);
 }
-// The hyperbolic functions lose digits near 0, as many as a height of float32 does not have.
+// These lose digits near 0, but no more than a float32 height can spare.
 double sinh(double x) {
   const double e = elementary::exp(x);
   return (e - 1 / e) / 2;
@@ -55,7 +55,7 @@ double atanh(double x) {
   return (elementary::log1p(x) - elementary::log1p(-x)) / 2;
 }
 
-/// In the place of all that muParser would compute; what is left to it adds, compares or rounds.
+/// Replaces muParser's arithmetic. Its remaining operations add, compare or round.
 void define_arithmetic(mu::Parser& parser) {
   struct Function {
     const char* name;
@@ -119,7 +119,6 @@ struct Formula {
   Formula& operator=(const Formula&) = delete;
 };
 
-/// Beyond float32 is infinite.
 float to_float(double v) {
   constexpr double kMost = std::numeric_limits<float>::max();
   if (v > kMost) return std::numeric_limits<float>::infinity();

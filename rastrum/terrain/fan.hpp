@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The most that a block of neighbouring columns can see between two slices, on any device.
+// A bound for what neighbouring columns can see between two slices, on any device.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace rastrum::terrain {
 
-/// The directions of columns [first, first + n).
+/// The range of the directions of columns [first, first + n).
 struct Fan {
   float ux0, ux1, uy0, uy1;
 
@@ -39,7 +39,7 @@ struct Fan {
   RASTRUM_HD static float lesser(float a, float b) { return b < a ? b : a; }
   RASTRUM_HD static float greater(float a, float b) { return a < b ? b : a; }
 
-  /// The cells that samples at distances [z0, z1] read along one axis.
+  /// Cells along one axis that samples at distances [z0, z1] read.
   RASTRUM_HD static CellRange cells(float u0, float u1, float z0, float z1, float within,
                                     std::int32_t cell) {
     const float low = within + lesser(z0 * u0, z1 * u0);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fast path, without paper 3's scans (its section 5.5 asks for that): a column keeps the row it
-// is drawn down to, a running minimum, and a sample that lies above it leaves a mark there, its
-// colour in the first row it shows. Columns go in blocks of 64, whose slices are walked near to far
-// in vectors of columns, until nothing can show any more: every column is full, or even the highest
-// peak of the map would stay below. Then rows are written once, top to bottom: the mark of a pixel,
-// or what is above it. So spans are never drawn, and bytes are written whole lines at a time.
+// The fast path, without paper 3's scans (its section 5.5 asks for that). Each column keeps a
+// running minimum, the row from which it is drawn down. A sample above that row leaves a mark, its
+// colour, in the first row it shows. Blocks of 64 columns walk their slices near to far in vectors
+// of columns, until every column is full or the map's highest peak would stay hidden. Then each row
+// is written once: a pixel's mark, or what is above it.
 #include <algorithm>
 
 #include <rastrum/stop.hpp>
@@ -15,13 +14,12 @@
 namespace rastrum::terrain {
 namespace {
 
-/// Slices that are left out at a time where all of them are hidden. Tried with
-/// blocks of 32 and 64 columns and groups of 4, 8 and 16; on a busy machine the differences between
-/// groups were within the noise, and blocks of 64 were no slower.
+/// Slices that are skipped together. On a busy machine groups of 4, 8 and 16 differed within the
+/// noise; blocks of 64 columns were no slower than of 32.
 constexpr std::size_t kGroup = 8;
 
-/// One block's walk over a terrain of functions: a call for the heights of a slice, one for the
-/// colours of what is visible.
+/// The walk over a terrain of functions: one call for a slice's heights, one for the colours of its
+/// visible samples.
 struct SurfaceWalk {
   const Samples& samples;
   alignas(64) double x[kBlockColumns], y[kBlockColumns];
@@ -59,7 +57,7 @@ Counts walk(const Samples& samples, const Kernels& kernels, std::size_t first, s
   for (std::size_t k = 0; k < setup.slices.size(); ++k) {
     const Slice& slice = setup.slices[k];
     if (block.deepest <= slice.lowest_row) break;
-    // Marks that are there are still written; the loop over the blocks says that it was stopped.
+    // The marks made so far are still written; the loop over the blocks reports the stop.
     if (k % kGroup == 0 && stop_requested()) break;
     if (is_map && k % kGroup == 0) {
       const std::size_t last = std::min(k + kGroup, setup.slices.size()) - 1;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The light of a terrain that is a function, on any device: how bright a point shows its colour, by
-// the heights about it and along the march to the sun. The host asks its function for many heights
-// at once (light.cpp), a device for one after the other. The code here turns heights into light for
-// both.
+// The light of a terrain that is a function, on any device, from heights about a point and along
+// the march to the sun. The host asks for many heights at once (light.cpp), a device for one at a
+// time.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +34,7 @@ struct FunctionStep {
   double x, y, climb;
 };
 
-/// Differences are taken over this many cells.
+/// Slopes are differences over this many cells to each side.
 inline constexpr double kSlopeStep = 1;
 
 struct FunctionLight {
@@ -45,18 +44,15 @@ struct FunctionLight {
   float ambient = 0.45F;
   ToSun to_sun{};
 
-  /// The share of the light that a slope reflects, by the heights kSlopeStep to each side.
   [[nodiscard]] RASTRUM_HD float slope(float west, float east, float north, float south) const {
     if (!hill_shading) return 1;
     return to_sun.shade((east - west) / static_cast<float>(2 * kSlopeStep),
                         (south - north) / static_cast<float>(2 * kSlopeStep), ambient);
   }
-  /// Whether a sample of the march hides the sun.
   [[nodiscard]] RASTRUM_HD static bool hides(float height, float own, const FunctionStep& step) {
     return own + static_cast<float>(step.climb) < height;
   }
-  /// The share that is left where `hidden` samples hide the sun. For sharp shadows, one counts as
-  /// many.
+  /// The share that is left where `hidden` samples hide the sun.
   [[nodiscard]] RASTRUM_HD float shadowed(float factor, int hidden) const {
     if (shadows == Shadows::none) return factor;
     if (shadows == Shadows::accumulated)
@@ -72,7 +68,7 @@ struct FunctionLight {
   }
 };
 
-/// A named function in its light, for kernels; `steps` must lie where these run.
+/// For kernels: `steps` must lie in the memory of the kernel's device.
 struct FunctionView {
   NamedFunction function = NamedFunction::cosines;
   FunctionLight light;
@@ -96,8 +92,8 @@ struct FunctionView {
   }
 };
 
-/// The function of a function_terrain for a device. Its steps lie in the host's memory and live as
-/// long as the terrain. None for a map, or for a caller's own function or surface.
+/// Its steps lie in the host's memory and live as long as the terrain. None for a map, or for a
+/// caller's own function or surface.
 [[nodiscard]] std::optional<FunctionView> function_view(const Terrain& terrain);
 
 }  // namespace rastrum::terrain

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The values of the named functions, on any device. Sine and exponential are short polynomials of
-// our own: float64 operations in one written order, unlike the C library's, which differ from
-// machine to machine and from host to device.
+// The named functions, on any device. Sine and exponential are polynomials of float64 operations in
+// one written order; a C library's differ between machines and from host to device.
 #pragma once
 
 #include <cmath>
@@ -56,7 +55,6 @@ RASTRUM_HD inline double squares(double x, double y) {
 RASTRUM_HD inline double expo(double x, double y) {
   return 140 * hump(x - 512, y - 512, 150);
 }
-/// The hump again and again, of two heights.
 RASTRUM_HD inline double expo2(double x, double y) {
   const double u = std::floor(x / 256), v = std::floor(y / 256), odd = (u + v) / 2;
   const double height = odd == std::floor(odd) ? 90 : 50;
@@ -77,7 +75,7 @@ RASTRUM_HD inline double corner(std::int64_t x, std::int64_t y, std::uint64_t oc
 }
 RASTRUM_HD inline double value_noise(double x, double y, std::uint64_t octave) {
   const double fx = std::floor(x), fy = std::floor(y);
-  // Beyond 2⁵² there is no lattice to tell apart.
+  // As in cell_at, int64 cannot hold all floors.
   const auto cell = [](double f) {
     return static_cast<std::int64_t>(f > -0x1p52 ? (f < 0x1p52 ? f : 0x1p52) : -0x1p52);
   };
@@ -88,7 +86,7 @@ RASTRUM_HD inline double value_noise(double x, double y, std::uint64_t octave) {
   const double bottom = corner(ix, iy + 1, octave) * (1 - u) + corner(ix + 1, iy + 1, octave) * u;
   return top * (1 - v) + bottom * v;
 }
-/// Fractal Brownian motion (Musgrave) of value noise: 8 octaves of half the height each.
+/// Fractal Brownian motion (Musgrave) of value noise.
 RASTRUM_HD inline double noise(double x, double y) {
   double sum = 0, amplitude = 0.5, scale = 1.0 / 256;
   for (std::uint64_t octave = 0; octave < 8; ++octave) {
@@ -120,7 +118,7 @@ RASTRUM_HD inline double noise(double x, double y) {
   return static_cast<float>(noise(x, y));
 }
 
-/// A HeightFunction that remembers which it is, so that a device can have it, too.
+/// Remembers the function's name, so that a device can compute it too.
 struct NamedHeights {
   NamedFunction function;
   void operator()(const double* x, const double* y, std::size_t n, float* out) const {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The list of the named functions.
 #include <rastrum/terrain_light.hpp>
 
 #include <array>

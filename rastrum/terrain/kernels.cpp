@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The scalar kernels: the operations of kernels_simd.cpp one column at a time.
+// The operations of kernels_simd.cpp one column at a time.
 #include <rastrum/terrain/kernels.hpp>
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fast path's kernels in vectors of columns with Highway, compiled once per instruction set.
-// Multiply and add are kept apart, so all give the bits of the scalar loops in kernels.cpp.
+// The fast path's kernels with Highway, compiled once per instruction set. Multiply and add are not
+// fused, so all give the bits of kernels.cpp.
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/terrain/kernels_simd.cpp"
@@ -38,7 +38,7 @@ bool is_power_of_two(int n) {
 
 enum class Wrap { mask, repeat, mirror, clamp, none };
 
-/// One axis of a map. Cells lie within ±2²³ of the camera's, which are exact in float32.
+/// Cells lie within ±2²³ of the camera's, where integers are exact in float32.
 template <Wrap kWrap>
 struct Axis {
   explicit HWY_INLINE Axis(int size)
@@ -53,7 +53,7 @@ struct Axis {
     if constexpr (kWrap == Wrap::mask) return hn::And(i, last_);
     if constexpr (kWrap == Wrap::clamp || kWrap == Wrap::none)
       return hn::Min(hn::Max(i, zero), last_);
-    // The quotient may be off by one, either way.
+    // The quotient may be off by one.
     const I q = hn::ConvertTo(d, hn::Floor(hn::Mul(hn::ConvertTo(F32{}, i), inverse_)));
     I r = hn::Sub(i, hn::Mul(q, period_));
     r = hn::Add(r, hn::IfThenElseZero(hn::Lt(r, zero), period_));
@@ -111,7 +111,7 @@ void heights(const Samples& samples, const Slice& slice, std::size_t n, ColumnBl
       }
       const I cell = hn::Add(hn::Mul(row, stride), column);
       hn::Store(cell, di, b.cells + i);
-      // Loads, not a gather: 4 % less a frame on Zen 3, busy; not measured elsewhere.
+      // Loads take 4 % less per frame than a gather on Zen 3 (busy); not measured elsewhere.
       for (std::size_t lane = 0; lane < kLanes; ++lane)
         b.heights[i + lane] = cells[b.cells[i + lane]];
     }
@@ -148,7 +148,6 @@ void heights_tiled(const Samples& samples, const Slice& slice, std::size_t n,
   heights_filtered<Wrap::repeat>(samples, slice, n, b);
 }
 
-/// map_detail::texels.
 template <Wrap kWrap>
 HWY_INLINE F texels(I cell, F within, int size, float texels_a_cell) {
   const F32 d;
@@ -168,7 +167,7 @@ HWY_INLINE F texels(I cell, F within, int size, float texels_a_cell) {
   return hn::Mul(hn::Add(whole, within), hn::Set(d, texels_a_cell));
 }
 
-/// MapView::color_at between four texels.
+/// MapView::color_at with MapFilter::bilinear.
 template <Wrap kWrap>
 void colors_between(const Samples& samples, const Slice& slice, std::size_t n, const ColumnBlock& b,
                     Rgba8* colors) noexcept {
@@ -233,7 +232,7 @@ void colors(const Samples& samples, const Slice& slice, std::size_t n, const Col
   const MapView& map = samples.map;
   if (map.filter != MapFilter::bilinear) return colors_one_by_one(samples, slice, n, b, out);
   if (map.tiling == Tiling::mirror) return colors_between<Wrap::mirror>(samples, slice, n, b, out);
-  if (map.tiling == Tiling::clamp || map.tiling == Tiling::none)  // no cell beyond is drawn
+  if (map.tiling == Tiling::clamp || map.tiling == Tiling::none)  // beyond the map nothing is drawn
     return colors_between<Wrap::clamp>(samples, slice, n, b, out);
   const ImageView<const Rgba8>& image = map.colors(0);
   if (is_power_of_two(map.width) && is_power_of_two(map.height) && is_power_of_two(image.width) &&
@@ -242,7 +241,6 @@ void colors(const Samples& samples, const Slice& slice, std::size_t n, const Col
   colors_between<Wrap::repeat>(samples, slice, n, b, out);
 }
 
-/// Lists the lanes of `visible`, whose first rows are `top`.
 HWY_INLINE std::size_t list(ColumnBlock& b, std::size_t i, std::size_t listed,
                             hn::Mask<I32> visible, I top) {
   const I32 d;
@@ -324,8 +322,8 @@ std::size_t occlude64(double altitude, double rows, double horizon, std::size_t 
 void advance(std::size_t columns, const double* dx, const double* dy, double* x,
              double* y) noexcept {
   const F64 d;
-  // Sums of one slice wait for each other, those of others do not: two vectors at once where there
-  // are two.
+  // Sums of one slice depend on each other, so two vectors of slices go at once where there are
+  // two.
   constexpr std::size_t kOther = 2 * kLanes64 <= kClassicSlices ? kLanes64 : 0;
   for (std::size_t k = 0; k < kClassicSlices; k += kLanes64 + kOther) {
     const D dx0 = hn::LoadU(d, dx + k), dx1 = hn::LoadU(d, dx + k + kOther);
@@ -345,7 +343,6 @@ void advance(std::size_t columns, const double* dx, const double* dy, double* x,
   }
 }
 
-/// The cell of floor(at), as an integer in float64.
 template <Wrap kWrap>
 HWY_INLINE hn::Vec<HalfI32> classic_cell(D at, int size) {
   const F64 d;
@@ -355,7 +352,7 @@ HWY_INLINE hn::Vec<HalfI32> classic_cell(D at, int size) {
   const D zero = hn::Zero(d), one = hn::Set(d, 1), s = hn::Set(d, size);
   if constexpr (kWrap == Wrap::clamp)
     return hn::DemoteTo(di, hn::Min(hn::Max(floor, zero), hn::Sub(s, one)));
-  // Positions are below 2⁵¹, so all of this is exact but the quotient, off by one at most.
+  // Positions are below 2⁵¹, so all is exact except the quotient, which may be off by one.
   const D period = hn::Set(d, kWrap == Wrap::mirror ? 2.0 * size : size);
   const D q = hn::Floor(hn::Div(floor, period));
   D r = hn::Sub(floor, hn::Mul(q, period));
@@ -416,7 +413,7 @@ void fill(std::uint32_t* marks, int first, int last, std::size_t n, std::uint32_
       row[i] = 0;
     }
   }
-  // Streamed stores are ordered with nothing else.
+  // Streamed stores need a fence before other threads read them.
   if (stream) hwy::FlushStream();
 }
 

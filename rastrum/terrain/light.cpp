@@ -24,7 +24,6 @@ void check(const Light& light) {
   if (!(light.ambient >= 0 && light.ambient <= 1)) reject("the ambient light must lie in 0 to 1");
 }
 
-/// The factor by which each cell's colour is shown.
 Image<float> light_of(const HeightMap& map, bool shade, const Light& light,
                       const ShadowOptions& options) {
   const ImageView<const float> heights = map.heights.view();
@@ -37,7 +36,7 @@ Image<float> light_of(const HeightMap& map, bool shade, const Light& light,
     for (std::size_t i = 0; i < f.size(); ++i)
       f[i] *= std::sqrt(1 / (1 + static_cast<float>(n.pixels()[i])));
   } else if (light.shadows == Shadows::sharp) {
-    // A shadow leaves the ambient light; slopes that face away have no more anyway.
+    // Slopes that face away have no more than ambient light anyway.
     const Image<std::uint8_t> dark = sharp_shadows(heights, light.sun, options);
     for (std::size_t i = 0; i < f.size(); ++i)
       if (dark.pixels()[i] != 0) f[i] = std::min(f[i], light.ambient);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How a map is read: tiling, filter and pyramid, one sample at a time, on any device. The SIMD
-// kernels do the same operations on vectors of samples for heights and, between cells, for colours,
-// which are only read where something is visible.
+// kernels do the same on vectors of samples.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +16,7 @@
 
 namespace rastrum::terrain {
 
-/// The levels of a pyramid, level 0 first, wherever they lie. The sizes are level 0's.
+/// Level 0 first; the sizes are level 0's.
 struct MapLevels {
   std::span<const ImageView<const float>> heights;
   std::span<const ImageView<const Rgba8>> colors;
@@ -25,12 +24,12 @@ struct MapLevels {
   int color_width = 0, color_height = 0;
 };
 
-/// Level 0 is the map; a cell of each further one stands for 2 × 2 of the one before (fewer at the
-/// edge of an odd size): the maximum of their heights, so that no peak is lost, or the mean of
-/// their colours. Holes count for nothing; where all are holes, so is the cell.
+/// Level 0 is the map. A cell of the next level stands for 2 × 2 cells (fewer at an odd edge): the
+/// maximum of their heights, so that no peak is lost, or the mean of their colours. Holes do not
+/// count; a cell of holes alone is a hole.
 class Pyramid {
  public:
-  /// `levels` of them at most, down to 1 × 1. O(cells).
+  /// `whole`: every level down to 1 × 1; else level 0 alone. O(cells).
   Pyramid(Shared<const Image<float>> heights, Shared<const Image<Rgba8>> colors, bool whole);
   Pyramid(Pyramid&&) = default;
   Pyramid& operator=(Pyramid&&) = default;
@@ -55,30 +54,29 @@ class Pyramid {
   Shared<const Image<float>> heights_;
   Shared<const Image<Rgba8>> colors_;
   bool whole_;
-  // Images keep their pixels where they are when they move.
+  // The views need that moved images keep the address of their pixels.
   std::vector<Image<float>> height_levels_;
   std::vector<Image<Rgba8>> color_levels_;
   std::vector<ImageView<const float>> height_views_;
   std::vector<ImageView<const Rgba8>> color_views_;
 };
 
-/// A cell of the level above `fine`.
+/// A cell of the next coarser level.
 template <class T>
 struct HalvedCell {
   ImageView<const T> fine;
   [[nodiscard]] RASTRUM_HD T operator()(int x, int y) const;
 };
 
-/// A map as the samples of one frame see it. Offsets are cells from the corner of the camera's
-/// cell.
+/// Offsets are cells from the corner of the camera's cell.
 struct MapView {
   MapLevels levels{};
   MapFilter filter = MapFilter::none;
   Tiling tiling = Tiling::repeat;
   std::int32_t cell_x = 0, cell_y = 0;
   int width = 0, height = 0;
-  float color_x = 1, color_y = 1;  ///< texels of the colours a cell
-  int color_level = 0;             ///< of the colours' pyramid at level 0 of the heights'
+  float color_x = 1, color_y = 1;  ///< texels of the colours per cell
+  int color_level = 0;             ///< of the colours' pyramid, for level 0 of the heights
 
   MapView() = default;
   MapView(const MapLevels& levels, const TerrainOptions& options, const SharedSetup& setup);
@@ -87,9 +85,8 @@ struct MapView {
 
   [[nodiscard]] RASTRUM_HD float height_at(float x, float y, int level) const;
   [[nodiscard]] RASTRUM_HD Rgba8 color_at(float x, float y, int level) const;
-  /// The index of the cell in its level, one that there is; unless filtered.
+  /// The index of the cell in its level; not for MapFilter::bilinear.
   [[nodiscard]] RASTRUM_HD std::int32_t cell_at(float x, float y, int level) const;
-  /// The last level that there is from `level` on down.
   [[nodiscard]] RASTRUM_HD int height_level(int level) const {
     const int last = static_cast<int>(levels.heights.size()) - 1;
     return level < last ? level : last;
@@ -100,14 +97,14 @@ struct MapView {
   [[nodiscard]] RASTRUM_HD const ImageView<const Rgba8>& colors(int level) const {
     return levels.colors[static_cast<std::size_t>(level)];
   }
-  /// A cell's colour has the cell's index.
+  /// Whether a cell's colour has the cell's index.
   [[nodiscard]] RASTRUM_HD bool colors_match() const {
     return filter != MapFilter::bilinear && levels.color_width == width &&
            levels.color_height == height;
   }
 };
 
-/// `color` with `clear` of 256 left of it.
+/// Fog over `color`, of which `clear` / 256 are left.
 [[nodiscard]] RASTRUM_HD inline Rgba8 faded(Rgba8 color, Rgba8 fog, std::uint32_t clear) {
   const auto mix = [clear](std::uint32_t c, std::uint32_t f) {
     return static_cast<std::uint8_t>((c * clear + f * (256 - clear) + 128) >> 8);
@@ -133,14 +130,13 @@ namespace map_detail {
   return {mean(&Rgba8::r), mean(&Rgba8::g), mean(&Rgba8::b), 255};
 }
 
-/// A position along one axis of the colours, in texels, from a cell and where in it one is.
+/// A position along one axis of the colours, in texels.
 [[nodiscard]] RASTRUM_HD inline float texels(std::int32_t cell, float within, int size,
                                              float texels_a_cell, Tiling tiling) {
-  // Every second map lies mirrored.
+  // Every second copy of the map is mirrored.
   if (tiling == Tiling::mirror &&
       tiled(cell, 2 * static_cast<std::int64_t>(size), Tiling::repeat) >= size)
     within = 1 - within;
-  // Beyond a clamped edge it is the edge.
   if ((tiling == Tiling::clamp || tiling == Tiling::none) && (cell < 0 || cell >= size))
     within = cell < 0 ? 0.0F : 1.0F;
   return (static_cast<float>(tiled(cell, size, tiling)) + within) * texels_a_cell;

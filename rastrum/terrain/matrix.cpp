@@ -26,8 +26,7 @@ Mat4d world_to_clip(const TerrainOptions& o, const TerrainCamera& c, double near
   if (o.projection != Projection::planar)
     reject("terrain: the cylindrical projection is no matrix; meshes need the planar one");
   const auto [sin, cos] = elementary::sin_cos(c.angle_rad);
-  // The position of a point (x, height, y, 1) relative to the camera: along the view, to its right,
-  // below it.
+  // A point (x, height, y, 1) relative to the camera: along the view, to its right, below it.
   const Row ahead{-sin, 0, -cos, sin * c.x + cos * c.y};
   const Row right{cos, 0, -sin, -cos * c.x + sin * c.y};
   const Row below{0, -1, 0, c.altitude};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The ways to a picture. All fill the targets' whole height for all columns.
+// All fill the targets' whole height for all columns.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +12,18 @@ namespace rastrum::terrain {
 
 struct Counts {
   std::uint64_t samples = 0, visible = 0;
-  std::uint64_t slices = 0;  ///< of a device
+  std::uint64_t slices = 0;  ///< on a device
 };
 
-/// Column by column, span by span: the reference of the others.
+/// The reference for the others.
 Counts draw_reference(const Samples& samples, const TerrainTargets& targets);
 
 struct BlockPool;
 
-/// Blocks of columns with SIMD.
 Counts draw_fast(parallel::Threads& exec, Isa isa, BlockPool& pool, const Samples& samples,
                  const TerrainTargets& targets);
 
-/// Macke's program in float64, camera lifted before. Positions must stay within 2^51 cells.
+/// The camera is lifted already. Positions must stay within 2^51 cells.
 Counts draw_classic(parallel::Threads& exec, Isa isa, BlockPool& pool, const Terrain& terrain,
                     const Ceiling& ceiling, const TerrainOptions& options,
                     const TerrainCamera& camera, const TerrainTargets& targets);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The serial device: near to far, spans drawn as they are found; each column by itself with the
-// samples of setup.hpp, slice by slice as the original. Written for plainness; source: Macke's
-// program (paper 3, section 2.3).
+// The serial device: each column by itself, near to far, spans drawn as they are found. Source:
+// Macke's program (paper 3, section 2.3).
 #include <limits>
 #include <vector>
 

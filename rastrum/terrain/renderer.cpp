@@ -26,7 +26,6 @@
 namespace rastrum::terrain {
 namespace {
 
-/// Adds the stages of a frame, one after the other.
 class Stopwatch {
  public:
   explicit Stopwatch(TerrainStats& stats) : stats_(stats) {}
@@ -66,7 +65,7 @@ struct TerrainRenderer::Impl {
     if (!exec) exec.emplace(options.threads, &memory);
     return *exec;
   }
-  /// The device's renderer for such frames. One that knows an added method draws all frames.
+  /// One made by an added method draws all frames.
   DeviceRenderer& gpu_for(const TerrainOptions& how) {
     if (const AddedMethod* method = added_for(how); method != nullptr && method != on_gpu) {
       gpu = method->make_device_renderer();
@@ -74,11 +73,9 @@ struct TerrainRenderer::Impl {
     }
     return *gpu;
   }
-  /// The added method if such frames are its; null if the renderer has its own.
   [[nodiscard]] static const AddedMethod* added_for(const TerrainOptions& how) {
     return how.classic ? nullptr : how.added;
   }
-  /// Chooses the device that draws a frame of this terrain.
   [[nodiscard]] DeviceChoice place(const Terrain& terrain, const TerrainOptions& how,
                                    const TerrainTargets& targets) {
     DeviceChoice choice{options.device, device_why};
@@ -113,7 +110,7 @@ struct TerrainRenderer::Impl {
     return {Device::threads, std::string("no CUDA: ").append(why_not)};
   }
 
-  /// Computes what is needed once for each map.
+  /// Computes what is needed once per map.
   void prepare(const Terrain& terrain, const TerrainOptions& how, Device where) {
     if (!terrain.is_map() || where == Device::cuda) return;
     if (where == Device::threads && !(ceiling && ceiling->is_of(terrain)))
@@ -193,7 +190,7 @@ struct TerrainRenderer::Impl {
   parallel::Serial serial;
   std::optional<parallel::Threads> exec;
   std::unique_ptr<DeviceRenderer> gpu;
-  const AddedMethod* on_gpu = nullptr;  ///< that it knows
+  const AddedMethod* on_gpu = nullptr;  ///< that `gpu` draws
   std::uint64_t fits_gpu = 0;           ///< bytes that were found to fit
   // Made from the map that was drawn last.
   std::optional<Ceiling> ceiling;

@@ -10,7 +10,7 @@ namespace {
 
 elementary::SinCos turn_by(double angle) {
   auto [sin, cos] = elementary::sin_cos(angle);
-  // A quarter turn of a double is not one of π.
+  // Rounding leaves sine or cosine of a quarter turn just off 0.
   if (std::abs(cos) < 1e-12) cos = 0;
   if (std::abs(sin) < 1e-12) sin = 0;
   return {sin, cos};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Camera roll. The plane of the picture is upright and the view level, so a rolled picture is a
-// rotated window of a larger upright one: exact for every angle, 360° of it. The larger picture is
-// drawn, then sampled: colours bilinearly between pixel centres, depth at the nearest; at multiples
-// of 90° both are the pixels themselves.
+// Camera roll. The picture plane is upright and the view level, so a rolled picture is a rotated
+// window of a larger upright one, exactly. The larger picture is sampled: colours bilinearly
+// between pixel centres, depth at the nearest pixel. At multiples of 90° both are the pixels
+// themselves.
 #pragma once
 
 #include <algorithm>
@@ -15,16 +15,16 @@
 
 namespace rastrum::terrain {
 
-/// Options and camera of the upright picture that holds the rolled one about the same centre.
 struct Upright {
   TerrainOptions options;
   TerrainCamera camera;
 };
-/// Throws Error{invalid_argument} where it would exceed the largest picture.
+/// The upright picture that holds the rolled one about the same centre. Throws
+/// Error{invalid_argument} if it would exceed the largest picture.
 [[nodiscard]] Upright upright_of(const TerrainOptions& options, const TerrainCamera& camera);
 
-/// The pixels of a picture of width × height that is turned counter-clockwise out of an upright
-/// one. Kernels copy it: sine and cosine are the host's library's, on every device.
+/// Pixels of a picture rotated counter-clockwise out of an upright one. Kernels copy its sine and
+/// cosine, so these are the host's on every device.
 class Roll {
  public:
   Roll(double roll_rad, int width, int height);
@@ -32,7 +32,7 @@ class Roll {
   struct Position {
     double x, y;  ///< px in the upright picture
   };
-  /// Where in the upright picture the centre of a pixel lies.
+  /// A pixel's centre in the upright picture.
   [[nodiscard]] RASTRUM_HD Position position(int upright_width, int upright_height, int x,
                                              int y) const {
     const double dx = x + 0.5 - width_ / 2.0, dy = y + 0.5 - height_ / 2.0;
@@ -43,7 +43,7 @@ class Roll {
   [[nodiscard]] RASTRUM_HD Rgba8 operator()(const ImageView<const Rgba8>& upright, int x,
                                             int y) const {
     const Position at = position(upright.width, upright.height, x, y);
-    // Positions in 1/256 px, so that what is a centre up to rounding is one.
+    // In 1/256 px, which undoes the rounding of positions at centres.
     const auto u = static_cast<std::int64_t>(std::floor((at.x - 0.5) * 256 + 0.5));
     const auto v = static_cast<std::int64_t>(std::floor((at.y - 0.5) * 256 + 0.5));
     const auto tx = static_cast<std::uint32_t>(u & 255), ty = static_cast<std::uint32_t>(v & 255);
@@ -63,7 +63,7 @@ class Roll {
   [[nodiscard]] RASTRUM_HD float operator()(const ImageView<const float>& upright, int x,
                                             int y) const {
     const Position at = position(upright.width, upright.height, x, y);
-    // As for colours, or the floor of what is a centre up to rounding might be its neighbour.
+    // Rounding must not move a centre into the neighbouring pixel.
     const auto pixel = [](double p, int size) {
       return static_cast<int>(std::clamp(std::floor(p + 1e-6), 0.0, size - 1.0));
     };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The samples of a frame, for any terrain, with heights and colours one at a time.
+// The samples of a frame, with heights and colours one at a time.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,6 @@
 
 namespace rastrum::terrain {
 
-/// The samples of a map, by value and on any device.
 struct MapSamples {
   SetupView setup;
   MapView map;
@@ -19,7 +18,7 @@ struct MapSamples {
   [[nodiscard]] RASTRUM_HD float height(std::size_t column, const Slice& slice) const {
     return map.height_at(setup.offset_x(column, slice), setup.offset_y(column, slice), slice.level);
   }
-  /// The colour that is seen: opaque, behind the fog.
+  /// Opaque, with fog.
   [[nodiscard]] RASTRUM_HD Rgba8 color(std::size_t column, const Slice& slice) const {
     return faded(
         map.color_at(setup.offset_x(column, slice), setup.offset_y(column, slice), slice.level),
@@ -30,7 +29,7 @@ struct MapSamples {
 /// The samples of any terrain, on the CPU.
 struct Samples : MapSamples {
   const Terrain& terrain;
-  const Ceiling* ceiling = nullptr;  ///< of the map, for methods that leave out what is hidden
+  const Ceiling* ceiling = nullptr;  ///< of the map, for methods that skip hidden samples
 
   [[nodiscard]] float height(std::size_t column, const Slice& slice) const {
     if (terrain.is_map()) return MapSamples::height(column, slice);
@@ -40,7 +39,7 @@ struct Samples : MapSamples {
     terrain.surface().heights(&px, &py, 1, &height);
     return height;
   }
-  /// The colour that is seen: opaque, behind the fog.
+  /// Opaque, with fog.
   [[nodiscard]] Rgba8 color(std::size_t column, const Slice& slice) const {
     if (terrain.is_map()) return MapSamples::color(column, slice);
     const double px = setup.camera_x + static_cast<double>(setup.offset_x(column, slice));

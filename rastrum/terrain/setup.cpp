@@ -13,21 +13,19 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kMaxDistance = 8e6;
-/// Offsets from the camera stay exact as integers in float32 up to here.
+/// Up to here offsets from the camera are exact integers in float32.
 constexpr double kMaxExtent = 0x1p23;
 constexpr double kFarAway = 1e12;
-/// Steps that are a share of the distance are not shorter than this one, so that the narrowest view
-/// has 260,000 slices at most.
+/// Limits the slices of the narrowest view to 260,000.
 constexpr double kLeastShare = 0x1p-14;
 
-/// Cells across the view at distance 1: from the middle to the edge.
+/// At distance 1, from the middle to the edge.
 double half_width(const TerrainOptions& o) {
   return o.projection == Projection::planar ? elementary::tan(o.fov_rad / 2) : o.fov_rad / 2;
 }
 
-/// The share of its distance that a step is long: what a pixel is high there, and no more than
-/// leaves each row below the horizon a sample of flat ground (a step takes step / z of the rows
-/// between its ground and the horizon). 0: steps of a length of their own.
+/// A step as a share of its distance: the height of a pixel there, but short enough that each row
+/// below the horizon has a sample of flat ground. 0 if the options give steps of their own.
 double step_share(const TerrainOptions& o) {
   const bool own = o.classic || o.step != 0 || o.filter != MapFilter::bilinear;
   return own ? 0 : std::max(1 / std::max<double>(scale_px(o), o.height), kLeastShare);
@@ -50,7 +48,7 @@ double slice_count(const TerrainOptions& o) {
     for (double z = 1; z < o.distance; z += z * share) ++n;
     return n;
   }
-  // The root of distance_of(k) = distance, then the last steps by the formula itself.
+  // The root of distance_of(k) = distance, then corrected by the formula.
   const double b = first_step(o) + o.dz / 2, reach = o.distance - 1;
   double k = std::floor(2 * reach / (b + std::sqrt(b * b + 2 * o.dz * reach)));
   while (k > 0 && distance_of(o, k - 1) >= o.distance) --k;
@@ -133,7 +131,6 @@ Setup set_up(const TerrainOptions& o, const TerrainCamera& camera, const Extent&
   const double half = half_width(o);
   const auto [sin, cos] = elementary::sin_cos(camera.angle_rad);
   for (std::size_t i = 0; i < w; ++i) {
-    // To the right of the view's axis, and along it.
     double right = ((static_cast<double>(i) + 0.5) * 2 / o.width - 1) * half, ahead = 1;
     if (o.projection == Projection::cylindrical) {
       ahead = elementary::cos(right);
@@ -150,7 +147,7 @@ Setup set_up(const TerrainOptions& o, const TerrainCamera& camera, const Extent&
   if (terrain.width > 0) {
     const auto reduced = [&](double corner, int size) {
       const auto cell = static_cast<std::int64_t>(corner);
-      const std::int64_t far = 1 << 30;  // beyond the edge, whatever the offset
+      const std::int64_t far = 1 << 30;  // beyond the edge with every offset
       if (o.tiling == Tiling::clamp || o.tiling == Tiling::none)
         return static_cast<int>(std::clamp(cell, -far, far));
       return static_cast<int>(
@@ -163,7 +160,7 @@ Setup set_up(const TerrainOptions& o, const TerrainCamera& camera, const Extent&
   const auto n = static_cast<std::size_t>(slice_count(o));
   const double scale = scale_px(o), spacing = 2 * half / o.width;
   const double share = step_share(o);
-  double along = 1;  // in steps that are a share of it
+  double along = 1;  // the distance, if steps are a share of it
   s.slices.resize(n);
   for (std::size_t k = 0; k < n; ++k) {
     Slice& slice = s.slices[k];

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The setup that a frame's samples share: the direction of each column and the distance of each
-// slice. Every method but `classic` takes its samples from here, so they agree bit for bit.
+// The directions of a frame's columns and the distances of its slices. Every method but `classic`
+// takes its samples from here, so they agree bit for bit.
 //
-// The sample of column i on slice k lies at offset (fx + z·ux, fy + z·uy) from the corner of the
-// camera's cell, float32: an error of 2⁻²³ of the distance, far less than a column's width,
-// wherever on the map the camera is; the cell itself is an integer. Its row is (altitude − height)
-// · rows + horizon. Multiply and add are kept apart.
+// The sample of column i on slice k lies at offset (fx + z·ux, fy + z·uy) in float32 from the
+// corner of the camera's cell, an integer. The error is 2⁻²³ of the distance wherever the camera
+// is, far less than a column's width. The sample's row is (altitude − height) · rows + horizon.
+// Multiply and add are not fused.
 #pragma once
 
 #include <cmath>
@@ -22,19 +22,18 @@ namespace rastrum::terrain {
 /// A distance z at which all columns are sampled.
 struct Slice {
   float z = 1;
-  float rows = 1;    ///< that a height of 1 takes at this distance
-  float lowest_row;  ///< no sample from here on lies above this row; it only shortens the work
+  float rows = 1;             ///< of a height of 1 at this distance
+  float lowest_row;           ///< no later sample rises above this row; it only saves work
   std::int32_t level = 0;     ///< of the pyramid: cells of 2^level
   std::uint32_t clear = 256;  ///< of 256: the share of a colour that the fog leaves
 };
 
-/// The values that all samples of a frame share.
 struct SharedSetup {
   double camera_x = 0, camera_y = 0;    ///< corner of the camera's cell
   std::int32_t cell_x = 0, cell_y = 0;  ///< the same within a map's period (or beyond its edge)
-  float fx = 0, fy = 0;                 ///< of the camera in its cell, [0, 1)
+  float fx = 0, fy = 0;                 ///< the camera in its cell, [0, 1)
   float altitude = 0;
-  float horizon = 0;  ///< rows, with the half row that makes floor(row) the first centre below
+  float horizon = 0;  ///< plus the half row that makes floor(row) the first centre below
   int height = 0;     ///< of the picture
   Rgba8 sky, fog;
 };
@@ -44,15 +43,15 @@ struct Setup : SharedSetup {
   std::vector<Slice> slices;  ///< near to far
 };
 
-/// A bound of filtered heights, if no height exceeds `highest`: filtering may round up a little.
+/// Filtering may round up a little.
 [[nodiscard]] RASTRUM_HD inline float filtered_bound(float highest) {
   return highest + std::abs(highest) * 0x1p-20F;
 }
 
-/// The first row of a sample that is drawn in no row.
+/// The first row of a sample that is not drawn.
 inline constexpr std::int32_t kNoRow = std::numeric_limits<std::int32_t>::max();
 
-/// A Setup as methods see it: by value, with the lists wherever the device has them.
+/// A Setup by value, with its lists in the device's memory.
 struct SetupView : SharedSetup {
   std::span<const float> ux, uy;
   std::span<const Slice> slices;
@@ -68,12 +67,10 @@ struct SetupView : SharedSetup {
   [[nodiscard]] RASTRUM_HD float offset_y(std::size_t column, const Slice& slice) const {
     return fy + slice.z * uy[column];
   }
-  /// The row of a height, counted from the top; NaN in a hole. Its floor is the first row that is
-  /// drawn.
+  /// Counted from the top; NaN in a hole. Its floor is the first row drawn.
   [[nodiscard]] RASTRUM_HD float row(float ground, const Slice& slice) const {
     return (altitude - ground) * slice.rows + horizon;
   }
-  /// That row within the picture, or kNoRow.
   [[nodiscard]] RASTRUM_HD std::int32_t first_row(float ground, const Slice& slice) const {
     const float at = row(ground, slice);
     if (!(at < static_cast<float>(height))) return kNoRow;  // also NaN
@@ -88,15 +85,14 @@ void check(const TerrainOptions& options);
 /// Throws Error{invalid_argument} if it is not finite or too far away.
 void check(const TerrainCamera& camera);
 
-/// How many slices lie before `distance`; for `classic`, too, up to a few that rounding decides.
+/// Slices before `distance`. For `classic` rounding may change it by a few.
 [[nodiscard]] double slice_count(const TerrainOptions& options);
 
-/// How many rows a height of 1 takes at distance 1.
+/// Rows of a height of 1 at distance 1.
 [[nodiscard]] double scale_px(const TerrainOptions& options);
 
-/// The properties of a terrain that a setup needs.
 struct Extent {
-  int width = 0, height = 0;  ///< cells of a map; 0: functions
+  int width = 0, height = 0;  ///< cells of a map; 0 for functions
   float highest = std::numeric_limits<float>::infinity();
 };
 [[nodiscard]] Extent extent_of(const Terrain& terrain);

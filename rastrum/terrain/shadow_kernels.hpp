@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The SIMD leaves of shadows, one table per instruction set; null members where the scalar code of
-// shadows.cpp is the way.
+// The SIMD kernels of shadows, a table per instruction set. Null means the scalar code of
+// shadows.cpp.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace rastrum::terrain {
 
-/// A sample of the march: its cell from the one where the ray begins, and the climb until there.
+/// A sample's cell and the ray's climb there, both from where the ray begins.
 struct MarchSample {
   std::int32_t dx = 0, dy = 0;
   float climb = 0;
@@ -23,7 +23,6 @@ struct MarchSample {
 /// Throws Error{invalid_argument} for a sun or march out of range.
 [[nodiscard]] std::vector<MarchSample> march_samples(const Sun& sun, const March& march);
 
-/// hidden_samples of one cell.
 [[nodiscard]] RASTRUM_HD inline std::uint16_t hidden_count(const ShadowCaster& map,
                                                            std::span<const MarchSample> samples,
                                                            int x, int y) {
@@ -35,21 +34,20 @@ struct MarchSample {
 }
 
 struct ShadowKernels {
-  /// Counts of hidden samples of row y.
+  /// Hidden samples of the cells of row y.
   void (*march_row)(const ShadowCaster& map, const std::vector<MarchSample>& samples, int y,
                     std::uint16_t* counts) noexcept = nullptr;
-  /// Ranges of a row of tiles: of `rows` <= HeightTiles::kEdge rows of `width` heights, `stride`
-  /// apart. True where all are finite; the ranges hold only then, or where what is not is -inf.
+  /// Ranges of a row of tiles, `rows` <= HeightTiles::kEdge rows of `width` heights. Returns
+  /// whether all heights are finite. If not, the ranges hold only if every other height is -inf.
   bool (*tile_ranges)(const float* heights, std::ptrdiff_t stride, int rows, std::size_t width,
                       float* lowest, float* highest) noexcept = nullptr;
 };
 
 [[nodiscard]] const ShadowKernels& shadow_kernels(Isa isa) noexcept;
 
-/// sharp_shadows for the bands [first, last) of a sweep.
 using SweepKernel = void (*)(const Sweep& sweep, int first, int last,
                              ImageView<std::uint8_t> shadow);
-/// Null where the plain definition is the way.
+/// Null where the plain definition is used.
 [[nodiscard]] SweepKernel sweep_kernel(Isa isa) noexcept;
 
 }  // namespace rastrum::terrain

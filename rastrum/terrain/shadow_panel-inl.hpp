@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Columns of a map as the sweep of shadow_sweep.hpp reads them: in units of 16 bits, rows of a
-// column side by side; for each instruction set once, in what includes it.
+// Columns of a map for the sweep of shadow_sweep.hpp: in 16-bit units, rows of a column side by
+// side. The includer compiles it once per instruction set.
 #if defined(RASTRUM_TERRAIN_SHADOW_PANEL_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RASTRUM_TERRAIN_SHADOW_PANEL_INL_HPP
 #undef RASTRUM_TERRAIN_SHADOW_PANEL_INL_HPP
@@ -26,9 +26,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 using I16 = hn::CappedTag<std::int16_t, 32>;
 constexpr std::size_t kBands = hn::MaxLanes(I16{});
 
-/// Heights as units: float32 rounds to whole numbers where it has no bits for parts of them, which
-/// leaves the number in the lower half of its 32 bits. (Conversions with care for overflow take
-/// three operations more.)
+/// Adding 1.5 · 2²³ makes float32 round to whole numbers, in the lower half of its 32 bits.
+/// (Conversions that check for overflow take three operations more.)
 class Quantizer {
  public:
   using D = hn::CappedTag<float, 8>;
@@ -41,7 +40,6 @@ class Quantizer {
         scale_(hn::Set(D{}, units.scale)),
         zero_(hn::Set(D{}, 0x1.8p23F + static_cast<float>(units.zero))) {}
 
-  /// In the lower halves.
   [[nodiscard]] HWY_INLINE Wide operator()(const float* from) const {
     const auto above = hn::Sub(hn::LoadU(D{}, from), lowest_);
     return hn::BitCast(hn::RebindToSigned<D>{}, hn::Max(hn::MulAdd(above, scale_, zero_), zero_));
@@ -51,8 +49,8 @@ class Quantizer {
   hn::Vec<D> lowest_, scale_, zero_;
 };
 
-/// Blocks of columns in units, turned so that the rows of a column lie side by side. Several at
-/// once, because rows of a map are pages apart, and lines of the cache longer than a block.
+/// Blocks of columns, transposed so that a column's rows lie side by side. Several at once, because
+/// a map's rows are pages apart and a cache line is longer than a block's row.
 class Panel {
  public:
   static constexpr int kBlocks = 4;
@@ -61,17 +59,17 @@ class Panel {
   Panel(const Sweep& sweep, int bands)
       : sweep_(sweep),
         bands_(bands),
-        // |s| ≤ 1: over a panel rows shift by its width at most, and a column's lie within 4.
+        // |s| ≤ 1: rows shift by at most a panel's width, and a column's rows lie within 4.
         stride_((static_cast<std::size_t>(bands + kColumns + 8 + kBeyond) + kBands) / kBands *
                 kBands),
         cells_(stride_ * kColumns) {}
 
   [[nodiscard]] std::size_t stride() const { return stride_; }
-  /// Column c's cell in `row` of the sweep's, for the first band.
+  /// The cell of column c in a row of the sweep, for the first band.
   [[nodiscard]] const std::int16_t* cell(int c, std::int64_t row) const {
     return cells_.data() + static_cast<std::size_t>(c) * stride_ + (row - low_);
   }
-  /// Blocks [first, last) of the sweep, rows from the least that `first_band` needs on.
+  /// Blocks [first, last) of the sweep, from the least row that `first_band` needs.
   HWY_NOINLINE void load(int first, int last, int first_band) {
     low_ = sweep_.blocks[static_cast<std::size_t>(first)].low;
     std::int32_t high = low_;
@@ -113,10 +111,9 @@ class Panel {
  private:
   using D32 = hn::RebindToSigned<Quantizer::D>;
   using D16 = hn::Repartition<std::int16_t, D32>;
-  /// Rows that are turned together; whole vectors are stored, and what is beyond the end is
-  /// overwritten by the next run, or not read.
+  /// Rows that are transposed together. Vectors stored beyond the end are overwritten or not read.
   static constexpr std::int64_t kTurned = 8;
-  /// Rows whose lines are fetched ahead: pages apart, nobody else sees what comes next.
+  /// Rows that are prefetched: they are pages apart, so the hardware does not do it.
   static constexpr std::int64_t kAhead = 32;
   static constexpr std::int64_t kBeyond = 2 * Quantizer::kCells;
 
@@ -141,11 +138,10 @@ class Panel {
       put(beside, to + k);
     }
   }
-  /// Where a block's columns are.
   struct Source {
     std::int64_t columns[kSweepBlock];
-    std::int64_t least;  ///< of them
-    bool up, down;       ///< one after the other, or the other way round
+    std::int64_t least;  ///< of the columns
+    bool up, down;       ///< whether columns are consecutive, rising or falling
   };
   [[nodiscard]] Source source_of(int x0) const {
     Source s{{}, 0, true, true};
@@ -158,7 +154,6 @@ class Panel {
     s.least = std::min(s.columns[0], s.columns[kSweepBlock - 1]);
     return s;
   }
-  /// 8 rows of the map in the columns of a block.
   HWY_INLINE void turn(const Quantizer& quantize, const Source& source, const float* const* of_map,
                        int c0, std::int64_t i) {
     float beside[kTurned][kSweepBlock];
@@ -175,7 +170,7 @@ class Panel {
     const D32 d;
     const hn::Repartition<std::int64_t, D32> d64;
     for (int q = 0; q < kSweepBlock; q += static_cast<int>(Quantizer::kCells)) {
-      // Two rows in each of these, then four, then all eight.
+      // Two rows in each, then four, then all eight.
       const auto pair = [&](int r) HWY_ATTR {
         return hn::BitCast(
             d, hn::OddEven(hn::BitCast(D16{}, hn::ShiftLeft<16>(quantize(rows[r + 1] + q))),
@@ -193,7 +188,8 @@ class Panel {
     }
   }
 
-  /// Each 128 bits are eight rows of a column, the upper ones of the fourth column from there.
+  /// Each 128 bits are eight rows of a column, the upper half those of the fourth column from
+  /// there.
   template <class V64>
   static HWY_INLINE void put_columns(V64 v, std::int16_t* to, std::ptrdiff_t next) {
     const hn::Full128<std::int16_t> d;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The ray from the middle of a cell to the sun, as the list of cells that it enters. All cells of a
-// map have the same size, so the list is the same for each of them (Amanatides and Woo, "A fast
-// voxel traversal algorithm", 1987, done once instead of once a cell).
+// The ray from the middle of a cell to the sun, as the list of cells that it enters. One list
+// serves all cells (Amanatides and Woo, "A fast voxel traversal algorithm", 1987, done once instead
+// of once per cell).
 #pragma once
 
 #include <cmath>
@@ -13,8 +13,8 @@
 
 namespace rastrum::terrain {
 
-/// The way to the sun over the ground, a unit vector, and how much a ray climbs on a cell's length.
-/// Suns at multiples of 45° lie exactly on axes and diagonals.
+/// The direction to the sun over the ground, a unit vector, and the climb per cell length. Suns at
+/// multiples of 45° lie exactly on axes and diagonals.
 struct SunRay {
   double x = 0, y = 0, rise = 0;
 };
@@ -22,17 +22,17 @@ struct SunRay {
 /// Throws Error{invalid_argument} for angles that are not finite, or an elevation above 90°.
 [[nodiscard]] SunRay sun_ray(const Sun& sun);
 
-/// Throws Error{invalid_argument} for one that is not above 0 to kLongestShadow cells long, or
+/// Throws Error{invalid_argument} for a march that is not above 0 to kLongestShadow cells long, or
 /// whose steps are out of range.
 void check(const March& march);
 
 /// The longest shadow, in cells of the axis that the ray follows.
 inline constexpr int kLongestShadow = 65536;
 
-/// The same for a sun above the horizon, no lower than makes shadows on this relief that long.
+/// Raises a sun above the horizon until no shadow on this relief is longer than that.
 [[nodiscard]] SunRay sun_ray(const Sun& sun, double relief);
 
-/// The mean of soft_light, of which `seen` of so many points are seen.
+/// The mean of soft_light if `seen` of `points` points are visible.
 [[nodiscard]] RASTRUM_HD constexpr std::uint8_t part_of_suns(std::uint32_t seen,
                                                              std::uint32_t points) {
   return static_cast<std::uint8_t>((seen * 255 + points / 2) / points);
@@ -40,13 +40,13 @@ inline constexpr int kLongestShadow = 65536;
 
 struct RayStep {
   std::int32_t dx = 0, dy = 0;  ///< from the cell where the ray begins
-  double climb = 0;             ///< of the ray until it enters
+  double climb = 0;             ///< of the ray until it enters the cell
 };
 
-/// Every cell until the ray has climbed more than `relief`, in order. Requires rise > 0.
+/// Until the ray has climbed more than `relief`. Requires rise > 0.
 [[nodiscard]] std::vector<RayStep> ray_steps(const SunRay& ray, double relief);
 
-/// Heights whose holes are −inf, with the range of the others.
+/// Heights with holes as −inf, and the range of the others.
 struct ShadowCaster {
   ImageView<const float> heights;
   Tiling tiling = Tiling::repeat;
@@ -62,7 +62,7 @@ struct ShadowCaster {
   }
 };
 
-/// The definition, for one cell, from step `first` on; stops at the first cell that hides the sun.
+/// The definition for one cell.
 [[nodiscard]] inline bool in_shadow(const ShadowCaster& map, const std::vector<RayStep>& steps,
                                     int x, int y) {
   const auto own = static_cast<double>(map.heights(x, y));

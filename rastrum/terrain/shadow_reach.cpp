@@ -8,7 +8,7 @@
 namespace rastrum::terrain {
 namespace {
 
-/// Calls f(tile) for the tiles of coordinates [begin, end) on an axis of `size` cells.
+/// Calls f(tile) for the tiles of coordinates [begin, end).
 template <class F>
 void each_tile(std::int64_t begin, std::int64_t end, std::int64_t size, bool flipped, Tiling tiling,
                const F& f) {
@@ -19,7 +19,7 @@ void each_tile(std::int64_t begin, std::int64_t end, std::int64_t size, bool fli
     f(static_cast<int>(at / kEdge));
     const bool mirrored =
         tiling == Tiling::mirror && tiled(of_plane, 2 * size, Tiling::repeat) >= size;
-    // To the tile's end on the way, or the map's; clamped ones go on at least as long.
+    // To the end of the tile or of the map. A clamped coordinate stays at least that long.
     i += flipped != mirrored ? at % kEdge + 1 : std::min(kEdge - at % kEdge, size - at);
   }
 }
@@ -28,14 +28,14 @@ void each_tile(std::int64_t begin, std::int64_t end, std::int64_t size, bool fli
 
 std::vector<int> reach_of(const ShadowCaster& map, const HeightTiles& tiles,
                           const SweepLines& lines, int block, int blocks) {
-  // Lines and climbs as float64 rounds them, and crossings that do not count.
+  // For float64's rounding of lines and climbs, and for corners that count as one crossing.
   constexpr double kRows = 1e-3;
   const double margin = 1e-6 * map.relief();
   const double highest = static_cast<double>(map.highest), lowest = static_cast<double>(map.lowest);
   const auto groups = static_cast<std::size_t>((lines.bands + kReachBands - 1) / kReachBands);
   const int own = (lines.columns + block - 1) / block;
   std::vector<int> reach(groups, own), across;
-  // Heights less what rays climb from X = 0 on: rays below these are hidden, or there are none.
+  // Rays below this height, less their climb from X = 0 on, are hidden or do not exist.
   std::vector<double> hidden(groups, lowest - (lines.columns - 0.5) * lines.tau);
   for (int b = own; b < blocks; ++b) {
     const double x0 = static_cast<double>(b) * block, x1 = x0 + block;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far beyond a map what its tiling repeats there can cast shadows on it. Not as far as the
-// longest ray: what is far away is high enough only where nothing nearer is. Ranges of heights in
-// square tiles tell, without a look at single cells.
+// How far beyond a map its tiled copies can cast shadows on it: less far than the longest ray,
+// because what is far away is high enough only where nothing nearer is. Ranges of heights in square
+// tiles decide it.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,6 @@
 
 namespace rastrum::terrain {
 
-/// Least and greatest heights of a map in squares of kEdge × kEdge cells.
 struct HeightTiles {
   static constexpr int kEdge = 16;
   int across = 0, down = 0;
@@ -29,21 +28,21 @@ struct HeightTiles {
   }
 };
 
-/// Where the lines y = c + s·X of a sweep (shadow_sweep.hpp) run, on the map as it is turned.
+/// The lines y = c + s·X of a sweep (shadow_sweep.hpp) on the turned map.
 struct SweepLines {
   bool along_x = true, flipped = false;
   int columns = 0, rows = 0;
-  double s = 0;    ///< rows a column
-  double tau = 0;  ///< height a column
+  double s = 0;    ///< rows per column
+  double tau = 0;  ///< height per column
   int first_band = 0, bands = 0;
 };
 
-/// Bands that are asked about together.
+/// Bands that share one reach.
 inline constexpr int kReachBands = 32;
 
-/// For each kReachBands bands, how many of `blocks` blocks of `block` columns their rays need: all
-/// that the map has, and of those beyond all but those at the end that hide the sun only from cells
-/// from which nearer ones hide it. Work O(bands · blocks beyond).
+/// How many of `blocks` blocks of `block` columns the rays of each kReachBands bands need: all of
+/// the map's, then those beyond it except the last ones that shade only cells that nearer blocks
+/// already shade. Work O(bands · blocks beyond).
 [[nodiscard]] std::vector<int> reach_of(const ShadowCaster& map, const HeightTiles& tiles,
                                         const SweepLines& lines, int block, int blocks);
 

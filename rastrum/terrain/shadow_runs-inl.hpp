@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rows and columns of a tiled map as runs of its own; for each instruction set once, in what
-// includes it.
+// Coordinates of a tiled map as runs of the map's own. The includer compiles it once per
+// instruction set.
 #if defined(RASTRUM_TERRAIN_SHADOW_RUNS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RASTRUM_TERRAIN_SHADOW_RUNS_INL_HPP
 #undef RASTRUM_TERRAIN_SHADOW_RUNS_INL_HPP
@@ -20,8 +20,8 @@ HWY_BEFORE_NAMESPACE();
 namespace rastrum::terrain::HWY_NAMESPACE {
 namespace {
 
-/// Calls f(i, source, n, step) for runs that make up coordinates [begin, begin + n): run i … is
-/// source, source + step, … of an axis that is `size` long.
+/// Calls f(i, source, length, step) for the runs of coordinates [begin, begin + n). From i on they
+/// are the axis's cells source, source + step, ….
 template <class Run>
 HWY_INLINE void for_each_run(std::int64_t begin, std::int64_t n, std::int64_t size, Tiling tiling,
                              const Run& f) {

@@ -7,22 +7,21 @@
 namespace rastrum::terrain {
 namespace {
 
-/// Fractions and columns that are nearer than this are taken as both sides of the border: far above
-/// what float64 rounds, and above the crossings that do not count (10⁻⁹ of 65,536 cells).
+/// Nearer to a border than this counts on both sides of it: far above the rounding of float64 and
+/// the corners that count as one crossing (10⁻⁹ of 65,536 cells).
 constexpr double kMargin = 1e-4;
 
-/// Units that two heights, each half a unit and less than a tenth off, and a ray's begin, rounded
-/// down, may be off together: below the begin's sum, and above it.
+/// Error in units of two heights (each half a unit and less than a tenth) and of a ray's begin,
+/// rounded down: below and above the begin's sum.
 constexpr int kBelow = 3, kAbove = 1;
 
 std::int64_t floor_of(double v) {
   return static_cast<std::int64_t>(std::floor(v));
 }
 
-/// The rays of a plan.
 struct Rays {
-  double s, tau;   ///< rows, units a column
-  double columns;  ///< a row, with the sign of s
+  double s, tau;   ///< rows and units per column
+  double columns;  ///< per row, with the sign of s
   bool alike;      ///< along an axis or a diagonal
 };
 
@@ -37,15 +36,15 @@ SweepColumn plan_column(int column, const Rays& rays) {
   return c;
 }
 
-/// Adds the cells of column x that rays of a part enter, row by row.
+/// The cells of column x that rays of a part enter, row by row.
 template <class Add>
 void each_entry(int column, int part, const Rays& rays, const Add& add) {
   const double x = column, s = rays.s;
   const double low = static_cast<double>(part) / kSubBands - kMargin;
   const double high = static_cast<double>(part + 1) / kSubBands + kMargin;
   const auto row = static_cast<std::int32_t>(std::floor(s * x + std::min(s, 0.0) - kMargin));
-  // The lines that enter and leave a row first, and last; y = f + s·x is in row r from
-  // (r + in − f)/s to (r + out − f)/s.
+  // The lines that enter and leave a row first, and last. y = f + s·x is in row r from (r + in −
+  // f)/s to (r + out − f)/s.
   const double early = s > 0 ? high : low, late = s > 0 ? low : high;
   const int in = s > 0 ? 0 : 1, out = 1 - in;
   for (int i = 0; i < 4; ++i) {
@@ -61,7 +60,6 @@ void each_entry(int column, int part, const Rays& rays, const Add& add) {
   }
 }
 
-/// Adds what a block does with part p of the bands.
 void plan_part(Sweep& p, SweepBlock& block, int x0, int part, const Rays& rays) {
   using Kind = SweepStep::Kind;
   const auto add = [&](Kind kind, int c, std::int32_t row, std::int64_t upper, std::int64_t lower) {
@@ -82,8 +80,7 @@ void plan_part(Sweep& p, SweepBlock& block, int x0, int part, const Rays& rays) 
                    add(all ? Kind::all_enter : Kind::may_enter, c, row, upper, all ? lower : upper);
                  });
     } else if (column.part == part) {
-      // Every ray runs in the same cells: from side to side of a row's middle, or from corner to
-      // corner.
+      // Every ray runs in the same cells: from side to side, or from corner to corner.
       const std::int32_t row = rays.s == 0 ? 0 : rays.s > 0 ? x : -x - 1;
       const double at = x * rays.tau;
       add(Kind::all_enter, c, row, floor_of(at), static_cast<std::int64_t>(std::ceil(at)));
@@ -91,8 +88,8 @@ void plan_part(Sweep& p, SweepBlock& block, int x0, int part, const Rays& rays) 
   }
 }
 
-/// The finest units whose sums fit 16 bits: heights and what is taken off them on a block and the
-/// half column before a ray's begin; and what a ray climbs on two blocks. `tau`: cells a column.
+/// The finest units that fit 16 bits: a height less the climb on a block and on the half column
+/// before a ray's begin, and a ray's climb on two blocks. `tau`: cells per column.
 SweepUnits units_of(const ShadowCaster& map, double tau) {
   const double relief = map.relief();
   const double units = std::min(65500 / (1 + (kSweepBlock + 0.5) * tau / relief),

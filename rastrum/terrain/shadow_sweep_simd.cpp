@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The sweep of shadow_sweep.hpp with Highway, compiled once per instruction set; each lane has a
-// band. It gives the definition's bits on every instruction set.
+// The sweep of shadow_sweep.hpp with Highway, compiled once per instruction set; each lane is a
+// band.
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/terrain/shadow_sweep_simd.cpp"
@@ -25,11 +25,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using V = hn::Vec<I16>;
 using U8 = hn::Rebind<std::uint8_t, I16>;
-/// How many bands have their bounds in registers together.
 constexpr std::size_t kGroupBands = 4 * kBands;
 constexpr std::int16_t kLeast = SweepUnits::least;
 
-/// One of the bounds of a group of bands.
 struct Bound {
   V v0, v1, v2, v3;
 
@@ -113,7 +111,6 @@ class Sweeper {
   /// The state of a cell; lit is 0.
   enum State : std::uint8_t { kDark = 1, kUndecided = 2 };
 
-  /// A SweepStep with pointers to its cells.
   struct Step {
     SweepStep::Kind kind;
     std::int16_t upper, lower;
@@ -121,7 +118,7 @@ class Sweeper {
     std::uint8_t* dark;
   };
 
-  /// Bands in the outer loop, columns in the inner one: the bounds of a group stay in registers.
+  /// The band loop is outside, so a group's bounds stay in registers.
   HWY_NOINLINE void sweep_part(int block, int part) {
     const SweepBlock& b = sweep_.blocks[static_cast<std::size_t>(block)];
     const auto p = static_cast<std::size_t>(part);
@@ -176,14 +173,13 @@ class Sweeper {
     hn::StoreU(hn::DemoteTo(U8{}, hn::IfThenElse(dark, hn::Set(d, kDark), state)), U8{}, to);
   }
 
-  /// Column c of a block in the current panel, counted from the panel's first.
+  /// Counted from the current panel's first column.
   [[nodiscard]] int in_panel(int block, int c) const {
     return (block - first_block_) * kSweepBlock + c;
   }
   [[nodiscard]] std::uint8_t* dark_of(int c) {
     return dark_.data() + static_cast<std::size_t>(c) * padded_;
   }
-  /// The upper bound of a block alone, and of all columns from it on.
   [[nodiscard]] std::int16_t& upper_in(int block, int part, std::size_t i) {
     return upper_in_[static_cast<std::size_t>(block * kSubBands + part) * padded_ + i];
   }
@@ -191,38 +187,38 @@ class Sweeper {
     return upper_from_[static_cast<std::size_t>(block * kSubBands + part) * padded_ + i];
   }
 
-  /// The map's row of a band's cell in a column; if outside of [0, rows), there is no such cell.
+  /// A row outside [0, rows) has no cell.
   [[nodiscard]] std::int64_t row_of(int x, std::size_t i) const {
     const std::int64_t row = std::int64_t{first_} + static_cast<std::int64_t>(i) +
                              sweep_.column[static_cast<std::size_t>(x)].begin_row;
     return sweep_.cyclic ? tiled(row, sweep_.rows, Tiling::repeat) : row;
   }
-  /// The map's cell at (x, row) of the sweep.
   [[nodiscard]] std::pair<int, int> cell_of(int x, std::int64_t row) const {
     const int along = sweep_.flipped ? sweep_.columns - 1 - x : x;
     return sweep_.along_x ? std::pair(along, static_cast<int>(row))
                           : std::pair(static_cast<int>(row), along);
   }
 
-  /// How far rays of column x climb, in units, until a block's first column.
+  /// The climb of column x's rays, in units, up to a block.
   [[nodiscard]] std::int64_t climb_to(int block, int x) const {
     return sweep_.blocks[static_cast<std::size_t>(block)].frame -
            sweep_.column[static_cast<std::size_t>(x)].begin;
   }
 
-  /// The next columns, still at hand, as the undecided cells of a column look at them.
+  /// The next columns, still in memory, which decide a column's open cells first.
   struct Outlook {
-    int x, end_block;            ///< the cells' column; the first block that is not looked at
-    const std::int16_t* own;     ///< the cell of band 0
-    const std::int16_t* before;  ///< the same as if the panel before went on in this one's columns
-    std::size_t own_steps, steps;  ///< of near_, in this panel and in all
-    const std::int16_t* upper;     ///< upper bounds from end_block on; null where nothing is
-    std::int16_t climb;            ///< that a ray has until there, but for what is rounded
+    int x, end_block;              ///< the cells' column; the first block that is not read
+    const std::int16_t* own;       ///< the cell of band 0
+    const std::int16_t* before;    ///< the same cell if the panel before went on in this one's
+                                   ///< columns
+    std::size_t own_steps, steps;  ///< ends of this panel's steps and of all, in near_
+    const std::int16_t* upper;     ///< bounds from end_block on; null if there is no block
+    std::int16_t climb;            ///< of a ray until end_block, less the rounding
   };
   [[nodiscard]] Outlook outlook_of(int block, int c) {
     Outlook o{};
     o.x = block * kSweepBlock + c;
-    // To the end of a block, whose bounds are known: this one's, or the next one's if that is near.
+    // To the end of this block, or of the next if that is near: bounds are known there.
     o.end_block = std::min(kSweepBlock - c > 4 ? block + 1 : block + 2, blocks_);
     const SweepColumn& column = sweep_.column[static_cast<std::size_t>(o.x)];
     const int left = Panel::kColumns - in_panel(block, c);
@@ -252,8 +248,7 @@ class Sweeper {
       if (undecided(i)) decide(outlook, i, dark);
   }
 
-  /// Decides in vectors first: the next columns decide most cells that the bounds leave open. The
-  /// definition decides the rest.
+  /// The next columns decide most open cells, in vectors. The definition decides the rest.
   HWY_INLINE void decide(const Outlook& o, std::size_t i, std::uint8_t* dark) {
     const I16 d;
     const V own = hn::LoadU(d, o.own + i);
@@ -305,8 +300,8 @@ class Sweeper {
       }
   }
 
-  /// The definition, but skips blocks whose upper bound is not above the cell's ray. Blocks before
-  /// `block` are known to cast no shadow here.
+  /// The definition, but skips blocks whose upper bound is not above the ray. Blocks before `block`
+  /// cast no shadow here.
   [[nodiscard]] HWY_NOINLINE bool traverse(int x, std::int64_t row, std::size_t i, int block) {
     const auto [cx, cy] = cell_of(x, row);
     const auto own = static_cast<double>(sweep_.map.heights(cx, cy));
@@ -330,8 +325,8 @@ class Sweeper {
     return false;
   }
 
-  /// Stores the panel's first n columns. If columns lie side by side in each row of the map, 16 ×
-  /// 16 cells at a time are turned in registers, and the ends are stored cell by cell.
+  /// Where columns lie side by side in the map's rows, 16 × 16 cells at a time are transposed in
+  /// registers; the ends are stored cell by cell.
   HWY_NOINLINE void store(int n) {
     const int x0 = first_block_ * kSweepBlock;
     if (!sweep_.along_x) {
@@ -342,7 +337,6 @@ class Sweeper {
     for (int c = 0; c < n; ++c)
       begin[c] = sweep_.column[static_cast<std::size_t>(x0 + c)].begin_row;
     const auto [low, high] = std::minmax_element(begin, begin + n);
-    // `at` counts rows from the first band's.
     for (std::int32_t at = *low; at < *high + bands_; at += kSweepBlock) {
       const std::int64_t from = std::int64_t{first_} + at;
       const std::int64_t row = sweep_.cyclic ? tiled(from, sweep_.rows, Tiling::repeat) : from;
@@ -352,7 +346,7 @@ class Sweeper {
         const auto has_all = [&](std::int32_t b) {
           return at >= b && at + kSweepBlock <= b + bands_;
         };
-        // From column to column, rows shift in one direction.
+        // Rows shift in one direction, so the first and the last column suffice.
         if (whole && end == c0 + kSweepBlock && has_all(begin[c0]) && has_all(begin[end - 1])) {
           const std::uint8_t* columns[kSweepBlock];
           for (int c = c0; c < end; ++c)
@@ -367,7 +361,7 @@ class Sweeper {
     }
   }
 
-  /// Stores the bands [begin, end) of a column, as far as they exist.
+  /// Bands [begin, end) of a column, as far as they exist.
   void store_column(int x0, int c, int begin, int end) {
     const std::uint8_t* const dark = dark_of(c);
     end = std::min(end, bands_);
@@ -411,13 +405,13 @@ class Sweeper {
   ImageView<std::uint8_t> shadow_;
   Panel panels_[2];
   Panel* current_ = &panels_[0];
-  Panel* previous_ = &panels_[1];    ///< the one before, nearer to the sun
-  int first_block_ = 0;              ///< of the current one
+  Panel* previous_ = &panels_[1];    ///< nearer to the sun
+  int first_block_ = 0;              ///< of the current panel
   std::vector<std::int16_t> lower_;  ///< of each part, in the frame of the block before
   int blocks_;
   std::unique_ptr<std::int16_t[]> upper_in_, upper_from_;  ///< in their block's frame
-  std::vector<std::uint8_t> dark_;                         ///< of the panel, column by column
-  /// The steps on the next two blocks, as distances in a Panel.
+  std::vector<std::uint8_t> dark_;                         ///< of the panel's cells, by column
+  /// Steps on the next two blocks, as distances in a Panel.
   struct Near {
     std::ptrdiff_t cell;
     std::int16_t climb;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The functions of terrain_light.hpp: plain loops for `serial` and the scalar instruction set,
-// which are the definition; the kernels of shadows_simd.cpp for the others.
+// The functions of terrain_light.hpp. Plain loops, for `serial` and the scalar instruction set, are
+// the definition; others use shadows_simd.cpp.
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/core/reject.hpp>
 #include <rastrum/parallel/device.hpp>
@@ -30,8 +30,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// (sin, cos) of degrees, exact at multiples of 45° in the sense that both are then 0, ±1 or of one
-/// length.
+/// At multiples of 45° both are exactly 0, ±1 or of equal size.
 std::pair<double, double> sin_cos_deg(double degrees) {
   const double turn = std::fmod(degrees, 360.0);
   const double octant = std::round(turn / 45.0);
@@ -65,8 +64,8 @@ void check(const Sun& sun) {
     reject("the sun's angles must be finite, and its elevation at most 90 degrees");
 }
 
-/// The result of f on a CUDA device, if the options ask for one. None if the CPU is to do the work;
-/// for `automatic` also if the map does not fit into the device's memory.
+/// The result of f if the options choose a CUDA device; none also for `automatic` if the device's
+/// memory is too small.
 template <class F>
 auto on_cuda(const ShadowOptions& options, F&& f) -> std::optional<decltype(f())> {
   if (choose_device(options.device).device != Device::cuda) return std::nullopt;
@@ -78,19 +77,17 @@ auto on_cuda(const ShadowOptions& options, F&& f) -> std::optional<decltype(f())
   }
 }
 
-/// The CPU's threads that the options ask for; null: the caller's alone.
+/// Null means the caller's thread alone.
 std::unique_ptr<parallel::Threads> threads_of(const ShadowOptions& options) {
   return options.device == Device::serial ? nullptr
                                           : std::make_unique<parallel::Threads>(options.threads);
 }
 
-/// The instruction set of the options; `serial` is plain C++.
 Isa isa_of(const ShadowOptions& options) {
   const Isa chosen = choose_isa(options.isa);
   return options.device == Device::serial ? Isa::scalar : chosen;
 }
 
-/// ShadowKernels::tile_ranges, in plain C++.
 bool plain_tile_ranges(const float* heights, std::ptrdiff_t stride, int rows, std::size_t width,
                        float* lowest, float* highest) noexcept {
   const std::size_t tiles = (width + HeightTiles::kEdge - 1) / HeightTiles::kEdge;
@@ -124,7 +121,7 @@ bool find_tiles(ImageView<const float> heights, const ShadowKernels& kernels, He
   return finite;
 }
 
-/// The map without its holes, and its tiles. If there are holes, it is a copy in `copy`.
+/// Holes become −inf, in `copy`.
 ShadowCaster caster_of(ImageView<const float> heights, Tiling tiling, const ShadowKernels& kernels,
                        Image<float>& copy, HeightTiles& tiles) {
   ShadowCaster map{heights, tiling, kInfinity, -kInfinity};
@@ -148,8 +145,7 @@ ShadowCaster caster_of(ImageView<const float> heights, Tiling tiling, const Shad
   return map;
 }
 
-/// Returns `shade(heights, options)` for a map beyond which nothing is: shades it with a ring of
-/// holes around it, with Tiling::clamp.
+/// Shades a map with nothing beyond it: with a ring of holes around it and Tiling::clamp.
 template <class Shade>
 auto shade_alone(ImageView<const float> heights, ShadowOptions options, const Shade& shade) {
   Image<float> ringed(heights.width + 2, heights.height + 2);
@@ -164,12 +160,11 @@ auto shade_alone(ImageView<const float> heights, ShadowOptions options, const Sh
   return made;
 }
 
-/// Rows of a map that a thread takes at once.
 constexpr std::size_t kRowGrain = 8;
-/// Bands of a sweep that a thread takes at once: the block of cells then stays in the first cache.
+/// With so many bands a thread's block of cells stays in the first-level cache.
 constexpr int kBandGrain = 512;
 
-/// Points of the sun's disc: Vogel's spiral, equal areas, the golden angle apart.
+/// Vogel's spiral: equal areas, the golden angle apart.
 std::vector<Sun> points_of_disc(const Sun& sun, double radius_deg) {
   constexpr int kPoints = 16;
   std::vector<Sun> points;
@@ -177,8 +172,7 @@ std::vector<Sun> points_of_disc(const Sun& sun, double radius_deg) {
     const double r = radius_deg * std::sqrt((i + 0.5) / kPoints);
     const auto [sin, cos] = elementary::sin_cos(i * std::numbers::pi * (3 - std::sqrt(5.0)));
     const double elevation = sun.elevation_deg + r * sin;
-    // Across the sky a degree of azimuth is cos(elevation) long; at the zenith there is no more
-    // than half a turn of it.
+    // A degree of azimuth is cos(elevation) degrees long across the sky.
     const double across = elementary::cos(sun.elevation_deg * std::numbers::pi / 180);
     const double turn = std::min(180.0, std::abs(r * cos) / std::max(across, 1e-9));
     Sun point{sun.azimuth_deg + std::copysign(turn, cos), elevation};
@@ -206,7 +200,7 @@ SunRay sun_ray(const Sun& sun, double relief) {
 }
 
 std::vector<RayStep> ray_steps(const SunRay& ray, double relief) {
-  // Crossings that are nearer than this, of the way so far, are one: a corner.
+  // Crossings nearer to each other than this share of the way are one: a corner.
   constexpr double kCorner = 1e-9;
   const double per_x = 1 / std::abs(ray.x), per_y = 1 / std::abs(ray.y);
   const int sx = ray.x < 0 ? -1 : 1, sy = ray.y < 0 ? -1 : 1;
@@ -220,7 +214,7 @@ std::vector<RayStep> ray_steps(const SunRay& ray, double relief) {
     const bool corner = std::abs(tx - ty) <= kCorner * t;
     if (tx <= ty || corner) ++nx;
     if (ty <= tx || corner) ++ny;
-    // Through a corner the ray is in the next cell from the later of the two crossings on.
+    // The ray enters the next cell at the later of the two crossings.
     steps.push_back({sx * nx, sy * ny, (corner ? std::max(tx, ty) : t) * ray.rise});
   }
 }
@@ -242,7 +236,7 @@ Image<std::uint8_t> sharp_shadows(ImageView<const float> heights, const Sun& sun
   Image<float> copy;
   HeightTiles tiles;
   const ShadowCaster map = caster_of(heights, options.tiling, kernels, copy, tiles);
-  if (!(map.lowest <= map.highest)) return shadow;  // holes alone
+  if (!(map.lowest <= map.highest)) return shadow;  // only holes
   const SunRay ray = sun_ray(sun, map.relief());
   std::vector<RayStep> steps;
   if (sun.elevation_deg > 0 && map.relief() > 0) steps = ray_steps(ray, map.relief());

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The march of paper 3 with Highway, compiled once per instruction set: 4 vectors of a row at a
-// time. It repeats the scalar operations and gives the same counts. And the ranges of the heights
-// in tiles of a map.
+// The march of paper 3 with Highway, compiled once per instruction set, 4 vectors of a row at a
+// time, and the ranges of heights in the tiles of a map.
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/terrain/shadows_simd.cpp"
@@ -28,7 +27,6 @@ constexpr std::size_t kLanes = hn::MaxLanes(F32{});
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::size_t kGroup = 4 * kLanes;
 
-/// Which samples of a group hide the sun, added to its counts.
 struct Counts {
   hn::Vec<I32> c0, c1, c2, c3;
 };
@@ -84,17 +82,17 @@ void march_row(const ShadowCaster& map, const std::vector<MarchSample>& samples,
   }
 }
 
-/// Columns that are folded together: their ranges stay in the first cache.
+/// Columns whose ranges stay in the first-level cache.
 constexpr std::size_t kStrip = 1024;
 
-/// Rows first, four at a time, into a range per column; these last.
+/// Reduces rows first, four at a time, then columns to tiles.
 bool tile_ranges(const float* heights, std::ptrdiff_t stride, int rows, std::size_t width,
                  float* lowest, float* highest) noexcept {
   static_assert(kStrip % HeightTiles::kEdge == 0 && HeightTiles::kEdge % kLanes == 0);
   constexpr std::size_t kEdge = HeightTiles::kEdge;
   const F32 d;
   float lows[kStrip], highs[kStrip];
-  // The difference to itself is NaN for what is not finite, and 0 for all else.
+  // x − x is NaN for what is not finite, else 0.
   F odd = hn::Zero(d);
   bool finite = true;
   for (std::size_t begin = 0; begin < width; begin += kStrip) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shadows of a terrain that is a function. It has no cells to traverse, so samples are taken along
-// the way to the sun (paper 3's generate_shadowmap with a function).
+// Shadows of a terrain that is a function, by samples along the way to the sun (paper 3's
+// generate_shadowmap with a function).
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,6 @@ namespace rastrum::terrain {
 
 class SunMarch {
  public:
-  /// No steps: nothing hides the sun.
   SunMarch() = default;
   SunMarch(const Sun& sun, const March& march) {
     const auto azimuth = elementary::sin_cos(sun.azimuth_deg * (std::numbers::pi / 180));
@@ -32,8 +31,7 @@ class SunMarch {
 
   [[nodiscard]] std::span<const FunctionStep> steps() const { return steps_; }
 
-  /// How many of the samples hide the sun from a point of height `own`. `one_is_enough`: may stop
-  /// counting once there is one.
+  /// How many samples hide the sun; with `one_is_enough` it may stop at one.
   [[nodiscard]] int hidden(const HeightFunction& function, double x, double y, float own,
                            bool one_is_enough) const {
     constexpr std::size_t kBatch = 64;

@@ -13,7 +13,7 @@
 namespace rastrum::terrain {
 namespace {
 
-/// Grey from the lowest height to the highest; holes are never seen.
+/// Grey from the lowest height to the highest.
 Image<Rgba8> grey_of(const Image<float>& heights, float highest) {
   float lowest = std::numeric_limits<float>::infinity();
   for (const float h : heights.pixels())

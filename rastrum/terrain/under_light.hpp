@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A map's colours under the light at each of its cells: both are stretched to the size of the finer
-// one. The caller chooses the type of the light: one number, or one for each channel.
+// A map's colours under the light of its cells, both stretched to the size of the finer one. The
+// light is one number, or one per channel.
 #pragma once
 
 #include <algorithm>
@@ -16,19 +16,20 @@
 
 namespace rastrum::terrain {
 
-/// A cell of a stretched image along one axis: a mix of cells `a` and `b`, with `share` of `b`.
+/// A mix of cells `a` and `b`, with `share` of `b`.
 struct Tap {
   int a = 0, b = 0;
   float share = 0;
 };
 
-/// The cells of an axis that is scaled from `from` to `to` cells: the cell in which each lies or,
-/// if `smooth`, the two between whose centres it lies.
+/// An axis scaled from `from` to `to` cells: for each the cell that it lies in or, if `smooth`, the
+/// two between whose centres it lies.
 [[nodiscard]] inline std::vector<Tap> scaled_taps(int from, int to, bool smooth, Tiling tiling) {
   std::vector<Tap> taps(static_cast<std::size_t>(to));
   for (std::int64_t i = 0; i < to; ++i) {
     Tap& tap = taps[static_cast<std::size_t>(i)];
-    // The centre in cells of `from`, less one half, times 2 · to: exact, so that equal sizes stay.
+    // The centre in cells of `from`, less one half, times 2 · to: exact, so equal sizes change
+    // nothing.
     const std::int64_t at = (2 * i + 1) * from - to, unit = std::int64_t{2} * to;
     const std::int64_t below = (at + unit) / unit - 1;  // at > −unit: the floor
     if (smooth) {
@@ -64,7 +65,7 @@ template <class T>
              mix(image(x.a, y.b), image(x.b, y.b), x.share), y.share);
 }
 
-/// An image of lit(colour, light) at each texel of the finer image. `threads` may be null.
+/// lit(colour, light) at each texel of the finer image. `threads` may be null.
 template <class Light, class Lit>
 [[nodiscard]] Image<Rgba8> under_light(const Image<Rgba8>& colors, const Image<Light>& light,
                                        bool smooth, Tiling tiling, const Lit& lit,

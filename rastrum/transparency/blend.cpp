@@ -11,7 +11,6 @@ namespace {
 
 using raster::BlockColors;
 
-/// Porter and Duff's `over`, front to back.
 class FrontToBack final : public LayerBlend {
  public:
   FrontToBack(float alpha_threshold, Isa isa)
@@ -49,7 +48,7 @@ class FrontToBack final : public LayerBlend {
   Seen seen_;
 };
 
-/// Each layer before those that came earlier: what a GPU does that blends without sorting.
+/// Each layer over the earlier ones, as a GPU blends without sorting.
 class AsSubmitted final : public LayerBlend {
  public:
   explicit AsSubmitted(Isa isa) : kernel_(blend_kernels(isa)), packed_(packed_kernels(isa)) {}

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The SIMD leaves of blending (blend_simd.cpp), once for each instruction set and with the same
-// bits.
+// The SIMD kernels of blending (blend_simd.cpp), a table per instruction set, with the same bits.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +10,9 @@
 
 namespace rastrum::transparency {
 
-/// Colour so far, premultiplied, and how much of what lies behind is seen through it. Alpha is
-/// summed as colours are: 1 − through has no more than an absolute precision, and straight colours
-/// divide by alphas of any size.
+/// Premultiplied colour so far, and the share of what lies behind that shows through. Alpha has a
+/// sum of its own: 1 − through would have only absolute precision, and straight colours divide by
+/// alphas of any size.
 struct alignas(64) Seen {
   float r[64], g[64], b[64], a[64], through[64];
 
@@ -27,7 +26,6 @@ struct alignas(64) Seen {
   }
 };
 
-/// Adds the colours of one sample to those of others.
 inline void add(raster::BlockColors& sum, const raster::BlockColors& sample) {
   for (int i = 0; i < 64; ++i) {
     sum.r[i] += sample.r[i];
@@ -38,14 +36,13 @@ inline void add(raster::BlockColors& sum, const raster::BlockColors& sample) {
 }
 
 struct BlendKernels {
-  /// Adds `layer` behind what is seen, at the pixels of `mask`. Returns the pixels of `mask` where
-  /// no more than `opaque_at` is seen through.
+  /// Adds `layer` behind what is seen, at the pixels of `mask`. Returns those where at most
+  /// `opaque_at` shows through.
   std::uint64_t (*behind)(const raster::BlockColors& layer, std::uint64_t mask, float opaque_at,
                           Seen& seen) noexcept;
-  /// Sets `out` to `seen` over `behind`.
   void (*finish)(const Seen& seen, const raster::BlockColors& behind,
                  raster::BlockColors& out) noexcept;
-  /// Puts `layer` before `colors`, at the pixels of `mask`.
+  /// Puts `layer` over `colors`, at the pixels of `mask`.
   void (*before)(const raster::BlockColors& layer, std::uint64_t mask,
                  raster::BlockColors& colors) noexcept;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Vectors of a block's colours, of what is seen of its pixels, and of packed fragments.
+// Vectors of a block's colours, its Seen, and packed fragments.
 #if defined(RASTRUM_TRANSPARENCY_BLEND_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RASTRUM_TRANSPARENCY_BLEND_LANES_INL_HPP
 #undef RASTRUM_TRANSPARENCY_BLEND_LANES_INL_HPP
@@ -37,7 +37,6 @@ HWY_INLINE SeenPixel load(const Seen& s, std::size_t i) {
   return {{hn::Load(d, s.r + i), hn::Load(d, s.g + i), hn::Load(d, s.b + i), hn::Load(d, s.a + i)},
           hn::Load(d, s.through + i)};
 }
-/// To a BlockColors or a Seen.
 template <class Planes>
 HWY_INLINE void store(const V4& v, Planes& to, std::size_t i) {
   const F32 d;
@@ -51,7 +50,7 @@ HWY_INLINE void store(const SeenPixel& pixel, Seen& to, std::size_t i) {
   hn::Store(pixel.through, F32{}, to.through + i);
 }
 
-/// Loads and a transposition, for they take a fifth of the time of four gathers (Zen 3).
+/// Loads and a transposition take a fifth of the time of four gathers (Zen 3).
 HWY_INLINE V4 load_colors(const std::uint64_t* sort_keys, const Vec4* colors) {
   const F32 d;
   const hn::RepartitionToWide<U32> wide;

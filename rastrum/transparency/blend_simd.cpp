@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Blending in vectors of pixels with Highway, compiled once per instruction set. Multiply and add
-// are kept apart, so all give the bits of the scalar loops.
+// Blending with Highway, compiled once per instruction set. Multiply and add are not fused, so all
+// give the same bits.
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/transparency/blend_simd.cpp"
@@ -18,7 +18,7 @@ HWY_BEFORE_NAMESPACE();
 namespace rastrum::transparency::HWY_NAMESPACE {
 namespace {
 
-/// Calls f(first pixel, lanes) for the vectors that hold any pixel of `mask`.
+/// Calls f(first pixel, lanes) for vectors with a pixel of `mask`.
 template <class Each>
 HWY_INLINE void for_each_vector(std::uint64_t mask, const Each& f) {
   constexpr std::uint64_t kVector = (std::uint64_t{1} << kLanes) - 1;

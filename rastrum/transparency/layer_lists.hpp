@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The translucent fragments of an 8 × 8 block in order, a list a pixel: the second stage of the
-// sort of paper 4 ("LucidRaster", sections "Sample blending" and "Phase 3"). The first, which sorts
-// the pieces of a block, makes the fragments arrive nearly in order; here each is inserted from the
-// back of its pixel's list. An insertion that looks back over at most K fragments is the paper's
-// depth filter: what lies farther back has left the filter and is blended already. Where that was
-// too early the paper leaves the pixel wrong; here the pixel is noted, and its list can be sorted.
+// The translucent fragments of an 8 × 8 block in order, a list per pixel: the second stage of the
+// sort of paper 4 ("LucidRaster", sections "Sample blending" and "Phase 3"). The first sorts a
+// block's pieces, so fragments arrive nearly in order and are inserted from the back of a list. An
+// insertion that looks back over at most K fragments is the paper's depth filter. The paper leaves
+// a pixel wrong if that is too few; here the pixel is noted, and its list can be sorted.
 //
-// The lists are kept as planes: plane k has the k-th key of every pixel, so that a plane is shaded
-// like a visible surface, and blended, in vectors of pixels. The paper keeps no lists but blends
-// what falls out of the filter; so do planes, only later.
+// Plane k has the k-th key of every pixel, and is shaded like a visible surface and blended in
+// vectors of pixels. The paper keeps no lists but blends what leaves the filter.
 //
-// Memory is bounded: a list that is full keeps the first fragments of its order and says that some
-// are left for another walk over the block's pieces (`window`).
+// A full list keeps the first fragments of its order; the rest needs another walk over the block's
+// pieces (a `window`). So memory is bounded.
 #pragma once
 
 #include <algorithm>
@@ -25,15 +23,15 @@
 
 namespace rastrum::transparency {
 
-/// A key and an owner for each pixel, and the mask.
+/// A key and an owner per pixel, and the mask.
 inline constexpr std::uint64_t kPlaneBytes = 64 * 12 + 8;
 
 enum class LayerOrder : std::uint8_t {
-  depth,      ///< nearest first, the first submitted first at equal depths: falling keys
+  depth,      ///< falling keys: nearest first; of equal depths the first submitted
   submission  ///< rising ids
 };
 
-/// `Owner`: what is kept beside each key, or NoOwner.
+/// `Owner`: stored beside each key.
 struct NoOwner {};
 template <class Owner = NoOwner>
 class LayerLists {
@@ -41,8 +39,7 @@ class LayerLists {
   explicit LayerLists(MemoryAccount& memory)
       : planes_(memory), masks_(memory), owners_(memory), column_(memory) {}
 
-  /// Begins a block. `filter`: over how many fragments an insertion looks back. `capacity`: most
-  /// planes, at least 2.
+  /// `filter`: fragments that an insertion looks back over. `capacity`: most planes, at least 2.
   void restart(LayerOrder order, std::size_t filter, std::size_t capacity) {
     order_mask_ = order == LayerOrder::depth ? ~std::uint64_t{0} : raster::kIdMask;
     filter_ = filter;
@@ -52,8 +49,8 @@ class LayerLists {
     std::fill_n(before_, 64, ~std::uint64_t{0});
     clear();
   }
-  /// Whether fragments were left out; then begins the lists of those, which follow behind the ones
-  /// that the planes hold.
+  /// If fragments were left out, begins their lists, which follow those in the planes, and returns
+  /// true.
   [[nodiscard]] bool next_window() {
     if (left_ == 0) return false;
     for (int i = 0; i < 64; ++i) before_[i] = (left_ >> i & 1) != 0 ? cutoff_[i] : 0;
@@ -62,7 +59,7 @@ class LayerLists {
     return true;
   }
 
-  /// Adds a fragment of pixel i. O(filter), O(log capacity) amortized where its list is full.
+  /// Adds a fragment of pixel i. O(filter), O(log capacity) amortized if its list is full.
   void insert(int i, std::uint64_t key, Owner owner = {}) {
     const std::uint64_t bit = std::uint64_t{1} << i;
     const std::uint64_t own = sort_key(key);
@@ -91,19 +88,17 @@ class LayerLists {
     if (k == first && first > 0 && sort_key(column[(k - 1) * 64]) < own) misplaced_ |= bit;
   }
 
-  /// Sorts the lists of misplaced fragments.
   void sort() {
     for (std::uint64_t m = misplaced_; m != 0; m &= m - 1) sort_column(std::countr_zero(m));
   }
 
-  /// Planes that any pixel has.
   [[nodiscard]] std::size_t depth() const { return *std::max_element(counts_, counts_ + 64); }
-  /// 64 keys; those outside of `mask` are of no fragment. 64-byte aligned.
+  /// 64 keys, valid within `mask`. 64-byte aligned.
   [[nodiscard]] const std::uint64_t* plane(std::size_t k) const { return planes_.data() + k * 64; }
   /// 64 owners, likewise.
   [[nodiscard]] const Owner* owners(std::size_t k) const { return owners_.data() + k * 64; }
   [[nodiscard]] std::uint64_t mask(std::size_t k) const { return masks_[k]; }
-  /// Pixels where a fragment arrived behind the filter, in this window or an earlier one.
+  /// Pixels where a fragment had to go beyond the filter, in any window so far.
   [[nodiscard]] std::uint64_t misplaced() const { return misplaced_; }
 
  private:
@@ -124,7 +119,7 @@ class LayerLists {
     allocated_ = room_ = planes;
     return true;
   }
-  /// Leaves the last half of a full list to the next window.
+  /// Leaves the second half of a full list to the next window.
   void halve(int i) {
     const std::uint64_t bit = std::uint64_t{1} << i;
     sort_column(i);
@@ -163,7 +158,7 @@ class LayerLists {
   std::size_t allocated_ = 0, capacity_ = 0, room_ = 0, filter_ = 0;
   std::uint64_t order_mask_ = 0;
   std::uint32_t counts_[64] = {};
-  std::uint64_t before_[64] = {};  ///< sort_keys from here on are in earlier windows, 0: all are
+  std::uint64_t before_[64] = {};  ///< sort_keys from here on are in earlier windows; 0: all are
   std::uint64_t cutoff_[64] = {};  ///< sort_keys below are left to the next window
   std::uint64_t left_ = 0, misplaced_ = 0;
 };

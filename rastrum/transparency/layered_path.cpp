@@ -18,35 +18,31 @@ using raster::kBinSize;
 using raster::kBlockSize;
 using raster::Rect;
 
-/// Bins of layers with more entries are cut into parts of 32², and those with even more into 16² px
-/// (paper 4's future work; there 32² for all), so that threads share dense bins. Each part covers
-/// the bin's pieces again: with an eighth of these numbers a brain of a million triangles took 1.3
+/// Bins of layers with more entries are cut into parts of 32², with even more into 16² px (paper
+/// 4's future work; there 32² for all), so that threads share dense bins. Each part covers the
+/// bin's pieces again: with an eighth of these numbers a brain of a million triangles took 1.3
 /// times as long.
 constexpr std::size_t kSparseBin = 1 << 16, kDenser = 8;
-/// With so many threads that a bin would be more than one's share, bins are cut from fewer entries
-/// on, but at least from these.
+/// If a bin exceeds a thread's share, bins are cut from fewer entries on, at least these.
 constexpr std::size_t kLeastCut = 1 << 11;
-/// A part's load apart from its entries, which are few where triangles are large; counted in
-/// entries. With 30, too many of sponza's bins went into one task.
+/// A part's load beside its entries, in entries: large triangles have few. With 30, too many of
+/// sponza's bins went into one task.
 constexpr std::uint64_t kPixels = 500;
-/// Bytes that a region of layers keeps for a piece in a block: three times 24, and a key.
+/// Per piece and block of a region: three times 24, and a key.
 constexpr std::uint64_t kRecordBytes = 80;
 
-/// A bin or a part of it.
 struct Part {
   std::size_t bin, entries;
   Rect rect;
   int side_px;
 
-  /// Most that a region may record of it.
   [[nodiscard]] std::uint64_t record_bytes() const {
     const auto across = static_cast<std::uint64_t>(side_px / kBlockSize);
     return entries * across * across * kRecordBytes;
   }
 };
 
-/// Cuts a bin into parts whose side its density and the memory for records ask for; up to `sparse`
-/// entries are not dense.
+/// More than `sparse` entries are dense.
 void cut_bin(std::size_t bin, Rect rect, std::size_t entries, std::size_t sparse,
              std::uint64_t most_bytes, std::vector<Part>& parts) {
   int side = entries <= sparse ? kBinSize : entries <= sparse * kDenser ? 32 : 16;
@@ -81,7 +77,7 @@ class LayeredPath final : public raster::Method {
 
   void draw(raster::FrameRun& frame, std::uint64_t first, std::uint64_t last) override {
     const BinTable lists{{frame.view, kBinSize}};
-    // Fragments of micro triangles are of one sample a pixel.
+    // Micro triangles' fragments have one sample per pixel.
     const auto groups = set_up(frame, lists, first, last);
     frame.watch.lap(frame.stats, "setup and bin");
     frame.fits = groups.has_value();
@@ -93,7 +89,8 @@ class LayeredPath final : public raster::Method {
     bins_.collect(dropped);
   }
 
-  /// In the order of clusters: of methods that sort, where nothing tells how they did.
+  /// Clusters do not come in the order of submission. Only methods that sort take them, and only if
+  /// no output shows how they sorted.
   [[nodiscard]] bool takes_clusters(const raster::FrameRequest& request) const override {
     return request.transparency.method == Transparency::exact && request.targets.errors.empty() &&
            request.samples == 1 && request.sink == nullptr;
@@ -125,7 +122,7 @@ class LayeredPath final : public raster::Method {
     std::vector<Part> parts;
     for (std::size_t bin = 0; bin < lists.bins.count(); ++bin)
       cut_bin(bin, lists.bins.rect(bin), entries(bin), sparse, most_bytes, parts);
-    // Parts that need more than a thread's share of the memory limit are drawn one by one.
+    // Parts beyond a thread's share of the memory limit go one by one.
     const auto alone = std::stable_partition(parts.begin(), parts.end(), [&](const Part& p) {
       return most_bytes == 0 || p.record_bytes() <= most_bytes;
     });
@@ -136,7 +133,7 @@ class LayeredPath final : public raster::Method {
       frame.for_each_index(static_cast<std::size_t>(alone - parts.begin()),
                            [&](std::size_t i) { draw(parts[i]); });
     } else {
-      // A part's own entries are not known, so its load is its area's share of the bin's.
+      // A part's entries are unknown, so its load is its area's share of the bin's.
       std::vector<std::uint64_t> loads;
       for (auto p = parts.begin(); p != alone; ++p)
         loads.push_back(kPixels + p->entries * static_cast<std::uint64_t>(p->side_px * p->side_px) /

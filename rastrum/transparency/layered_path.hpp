@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fast path of scenes with translucent surfaces, or of several samples a pixel (called
-// `grouped` and `layers`): bins as on the opaque one (raster/frame/bins.hpp), in which every
-// fragment is kept and blended in order.
+// The fast path for translucent surfaces or several samples per pixel (called `grouped` and
+// `layers`): bins as in raster/frame/bins.hpp, in which every fragment is kept and blended in
+// order.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace rastrum::transparency {
 
-/// Work O(triangles + fragments · log layers); memory as the opaque path and LayeredBin have it.
+/// Work O(triangles + fragments · log layers); memory as the opaque path and LayeredBin.
 [[nodiscard]] std::unique_ptr<raster::Method> make_layered_path(MemoryAccount& memory);
 
 }  // namespace rastrum::transparency

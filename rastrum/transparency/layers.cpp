@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// LucidRaster's rasterization stage (paper 4, stage 3) for threads: a bin's translucent pieces are
-// recorded as windows of 8 × 8 samples with masks, or as blocks where a pixel has several (the
-// paper's tri-blocks), sorted by block, and by the depth
-// at the centroid of their samples; then each pixel's fragments are ordered (layer_lists.hpp) and
-// blended (blend.hpp).
+// LucidRaster's rasterization stage (paper 4, stage 3) for threads. A bin's translucent pieces are
+// recorded as masks of 8 × 8 samples: windows, or blocks if a pixel has several samples (the
+// paper's tri-blocks). They are sorted by block and by the depth at their samples' centroid. Then
+// each pixel's fragments are ordered (layer_lists.hpp) and blended (blend.hpp).
 //
-// Where it deviates: the paper shades fragment by fragment, in the order of blocks; here a plane of
-// fragments, one a pixel, is shaded like a visible surface, so that every shader of the opaque path
-// serves and neighbours share vectors. Lists grow, so that no density of a bin needs a rasterizer
-// of its own; dense bins are cut to smaller parts (layered_path.cpp), and all are in flight at
-// once.
+// Where it deviates: the paper shades fragment by fragment. Here a plane of fragments, one per
+// pixel, is shaded like a visible surface, so every shader of the opaque path serves and neighbours
+// share vectors. Lists grow, so no density needs its own rasterizer; dense bins are cut into parts
+// (layered_path.cpp).
 #include <rastrum/transparency/layers.hpp>
 
 #include <algorithm>
@@ -41,12 +39,11 @@ using raster::Piece;
 using raster::Rect;
 using raster::Translucent;
 
-/// How many fragments `exact` looks back over before it leaves a pixel to the sort.
+/// Fragments that `exact` looks back over before the sort.
 constexpr std::size_t kExactFilter = 8;
-/// Where a block has fewer samples its lists are short, and the insertion alone sorts them faster
-/// than a sort of the pieces before it (paper 4: up to 3 pieces).
+/// With fewer samples insertion is faster without a sort of the pieces (paper 4: up to 3 pieces).
 constexpr std::uint64_t kFewSamples = 4 * 64;
-/// Layers at once: 16 MiB a thread.
+/// 16 MiB per thread.
 constexpr std::size_t kMostPlanes = std::size_t{1} << 15;
 constexpr std::size_t kLeastPlanes = 64;
 
@@ -92,8 +89,8 @@ struct LayeredBin::Impl {
       recorded_.begin(*made_, *sink_);
       blend_ = &recorded_;
     }
-    // Half of what fragments may take is for records (layered_path.cpp cuts bins by it), and a
-    // worker may come to keep both planes and packed fragments.
+    // Half of the fragments' memory is for records (layered_path.cpp). A worker may hold both
+    // planes and packed fragments.
     const std::uint64_t share = context.fragment_bytes / 4;
     planes_ = kMostPlanes;
     if (share != 0)
@@ -104,7 +101,7 @@ struct LayeredBin::Impl {
 
   void blocks(const Piece* pieces, std::span<const Block> blocks) {
     for (std::size_t i = 0; i < blocks.size();) {
-      // With several samples a pixel the keys of the surface are not enough for opaque ones.
+      // With several samples the surface's keys do not suffice for opaque pieces.
       const auto is_opaque = [&](const Block& b) {
         return samples_ == 1 && (pieces[b.piece].flags & kTranslucent) == 0;
       };
@@ -122,7 +119,6 @@ struct LayeredBin::Impl {
     has_opaque_ = true;
   }
 
-  /// Nobody wants translucent fragments.
   [[nodiscard]] bool leaves_out() const { return translucent_ == Translucent::left_out; }
   [[nodiscard]] bool hands_on_colors() const { return translucent_ == Translucent::colors_to_sink; }
 
@@ -147,7 +143,6 @@ struct LayeredBin::Impl {
 
   [[nodiscard]] bool takes_windows() const { return samples_ == 1; }
 
-  /// Takes what CoverWindows writes.
   void windows(const Piece* pieces, std::span<Block> windows) {
     const auto is_opaque = [&](const Block& w) {
       return (pieces[w.piece].flags & kTranslucent) == 0;
@@ -176,8 +171,8 @@ struct LayeredBin::Impl {
     }
   }
 
-  /// Writes the window of a block, or of a window, that begins at `pixel` of the region to `out`,
-  /// which is behind those of windows_. Returns where the next one goes.
+  /// Writes the window of `b` at `pixel` of the region to `out`, behind those of windows_. Returns
+  /// the place of the next one.
   Window* add(const Piece* pieces, const Block& b, std::uint32_t pixel, Window* out) {
     const Piece& piece = pieces[b.piece];
     *out = {&piece, b.mask, pixel};
@@ -191,8 +186,8 @@ struct LayeredBin::Impl {
     *out = own;
     return out + (own.mask != 0);
   }
-  /// The pieces that a triangle was clipped to may overlap by a snapped vertex; they are one layer,
-  /// and at each sample the nearest counts. They come one after the other, as blocks.
+  /// A clipped triangle's pieces may overlap by a snapped vertex. They are one layer, and come one
+  /// after the other, as blocks: at each sample the nearest counts.
   void keep_nearest(Window& window) {
     alignas(64) std::uint64_t keys[64], others[64];
     Block block{0,
@@ -217,7 +212,7 @@ struct LayeredBin::Impl {
   }
 
   void fragments(std::span<const BinFragment> fragments) {
-    // They count from the bin, of which the region may be a part.
+    // Fragments count from the bin; the region may be a part of it.
     const auto first = static_cast<std::uint32_t>(rect_.y0 % raster::kBinSize * kPackedPitch +
                                                   rect_.x0 % raster::kBinSize);
     while (!fragments.empty()) {
@@ -295,7 +290,7 @@ struct LayeredBin::Impl {
     micro_by_block_.sort(blocks);
   }
 
-  /// Keys of translucent fragments to the sink, and the opaque surfaces' colours.
+  /// Sends the keys of translucent fragments to the sink, and shades the opaque surfaces.
   void hand_on_keys() {
     const std::size_t blocks = raster::block_count(rect_);
     sort_by_block(blocks);
@@ -325,7 +320,7 @@ struct LayeredBin::Impl {
     }
   }
 
-  /// All blocks of `grid` at once, if what they have is little enough.
+  /// Resolves `grid` at once. Returns false if its fragments are too many.
   bool resolve_packed(const BlockGrid& grid, std::span<const Window> windows,
                       const MicroFragments& micro) {
     if (samples_ > 1) return false;
@@ -337,7 +332,7 @@ struct LayeredBin::Impl {
         std::uint64_t* const keys = surface_.block(bx, by);
         BlockColors& out = *surface_.colors_of(bx, by);
         const bool any = packed_.any(bx, by), opaque = packed_.has_opaque(bx, by);
-        // Where there is nothing nobody looks at the colours.
+        // A block with nothing in it keeps its colours unset; they are not read.
         if (opaque) shade_opaque(keys, bx, by, any ? behind_ : out);
         if (!any) continue;
         if (shading_) {
@@ -361,7 +356,7 @@ struct LayeredBin::Impl {
                             !filters(), keys, out));
       return;
     }
-    micro_.restart();  // all of them are in their blocks
+    micro_.restart();  // they are in their blocks
     for (const MicroRecord& f : micro)
       micro_.add(f.key, f.pixel / kBlockSize * kPackedPitch + f.pixel % kBlockSize);
     windows_.restart();
@@ -391,7 +386,7 @@ struct LayeredBin::Impl {
         if (!filters()) lists_.sort();
         const std::size_t depth = lists_.depth();
         for (std::size_t k = 0; k < depth; ++k) {
-          // Sorted by depth, the first plane holds the nearest.
+          // Sorted by depth, the first plane has the nearest.
           if (k == 0 || !sorted) raise(nearest, lists_.plane(k), lists_.mask(k));
           const std::uint64_t mask = lists_.mask(k) & ~finished;
           if (mask == 0) continue;
@@ -410,7 +405,6 @@ struct LayeredBin::Impl {
     if (translucent_ == Translucent::blended) std::copy_n(nearest, 64, keys);
   }
 
-  /// Whether fragments that arrive out of order stay where the filter puts them.
   [[nodiscard]] bool filters() const { return filter_of(made_for_) != 0; }
   [[nodiscard]] std::size_t filter() const {
     return filters() ? static_cast<std::size_t>(filter_of(made_for_)) : kExactFilter;
@@ -433,7 +427,7 @@ struct LayeredBin::Impl {
       if (f.key > keys[f.pixel]) lists_.insert(static_cast<int>(f.pixel), f.key);
   }
 
-  /// The filter's errors are those of sorted pieces.
+  /// The filter's errors are defined for sorted pieces.
   [[nodiscard]] bool wants_sort(std::span<const Record> records) const {
     if (records.size() < 2) return false;
     if (filters() || records.size() * 64 > 16 * kFewSamples) return true;
@@ -467,12 +461,12 @@ struct LayeredBin::Impl {
     return colors_;
   }
 
-  /// The opaque surface, and nothing where there is none.
+  /// The opaque surface; 0 where there is none.
   void shade_opaque(const std::uint64_t* keys, int bx, int by, BlockColors& out) {
     std::uint64_t covered =
         context_.kernel->covered(keys) &
         raster::samples_inside({0, 0, context_.request->width, context_.request->height}, bx, by);
-    if (hands_on_colors()) covered = 0;  // what is behind is laid there by who blends
+    if (hands_on_colors()) covered = 0;  // the sink's owner draws what is behind
     if (covered != ~std::uint64_t{0}) out = {};
     if (covered == 0 || !shading_) return;
     const BlockColors& colors = shade(keys, covered, bx, by);
@@ -487,7 +481,7 @@ struct LayeredBin::Impl {
   void note_misplaced(int bx, int by, std::uint64_t pixels) {
     misplaced_ += static_cast<std::uint64_t>(parallel::popcount(pixels));
     const ImageView<std::uint8_t>& errors = context_.request->targets.errors;
-    // By order of submission nothing is out of depth order.
+    // In the order of submission no depth is misplaced.
     if (errors.empty() || blend_->order() != LayerOrder::depth) return;
     for (std::uint64_t m = pixels; m != 0; m &= m - 1) {
       const int i = std::countr_zero(m);
@@ -499,21 +493,21 @@ struct LayeredBin::Impl {
   raster::SurfaceView surface_;
   Rect rect_;
   int columns_ = 0;
-  raster::Shading shading_;  ///< none: no colour is wanted
+  raster::Shading shading_;  ///< empty: no colour is wanted
   std::size_t planes_ = 0;
   int samples_ = 1;
 
   raster::BinKeys opaque_;
-  bool has_opaque_ = false;  ///< the surface may have keys
+  bool has_opaque_ = false;  ///< whether the surface may have keys
   std::unique_ptr<LayerBlend> made_;
-  LayerBlend* blend_ = nullptr;  ///< that, or what hands on its layers
+  LayerBlend* blend_ = nullptr;  ///< `made_`, or `recorded_` around it
   RecordedBlend recorded_;
   const PackedKernels* kernel_ = nullptr;
   raster::FragmentSink* sink_ = nullptr;
   Translucent translucent_ = Translucent::blended;
   TransparencyOptions made_for_;
   Isa made_with_ = Isa::scalar;
-  InOrder<Window> windows_;  ///< of one sample a pixel
+  InOrder<Window> windows_;  ///< if pixels have one sample
   ByBlock<Record> records_;
   MicroRecords micro_;
   ByBlock<MicroRecord> micro_by_block_;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `over` at one pixel, for the scalar kernels and for devices.
 #pragma once
 
 #include <rastrum/raster/rules/scalar_lane.hpp>

@@ -14,27 +14,25 @@ using raster::BlockColors;
 using raster::kBlockSize;
 using raster::kIdMask;
 
-/// As many as a list's length allows, with their sort_keys: 64 k fragments were a little faster
-/// than half of them.
+/// 64 k fragments, which a list's length allows, were a little faster than half of them.
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 22;
-/// Key, pixel, colour, and what is kept a bit a fragment.
+/// Key, pixel, colour, and bits.
 constexpr std::uint64_t kFragmentBytes = 8 + 2 + sizeof(Vec4) + 1;
-/// A pixel's list is of 16-bit length.
+/// A pixel's list has a 16-bit length.
 constexpr std::size_t kMostFragments = 65535;
 
 /// Layers that are shaded before it is known how much they hide.
 constexpr std::uint32_t kFirstTurn = 4;
 
-/// Where the filter sees a piece's samples in a block: larger ones first; above 0. 0 where that
-/// cannot be told: the plane of a sliver goes anywhere.
+/// The place of a piece's samples in the filter's order: larger first, above 0. 0 if unknown: a
+/// sliver's plane may have any depth.
 std::uint32_t arrival_of(const raster::Piece& piece, std::uint64_t mask, int bx, int by) {
   const auto depth = static_cast<std::uint32_t>(~near_first(piece, mask, bx, by) >> 32);
   constexpr std::uint32_t kMost = 0x3FFFFFFE;  // of depths below 2
   return depth < kMost ? 1 + depth : 0;
 }
 
-/// How many layers of `alpha` a pixel takes before no more than `opaque_at` is seen through it, as
-/// the kernels count.
+/// Layers of `alpha` until no more than `opaque_at` shows through, as the kernels count.
 std::uint32_t layers_until(float alpha, float opaque_at) {
   std::uint32_t layers = 0;
   for (float through = 1; !(through <= opaque_at) && layers < kMostFragments; ++layers)
@@ -82,7 +80,7 @@ void PackedFragments::count_layers() {
                  most_);
 }
 
-/// Drops the fragments behind opaque surfaces. Returns whether there were any.
+/// Returns whether there are opaque surfaces.
 bool PackedFragments::leave_out_hidden() {
   const auto blocks = static_cast<std::size_t>(grid_.columns * grid_.rows);
   if (std::all_of(opaque_, opaque_ + blocks, [](const std::uint64_t* keys) { return !keys; }))
@@ -103,8 +101,8 @@ bool PackedFragments::leave_out_hidden() {
   return true;
 }
 
-/// When the filter sees each fragment: those of a piece in a block by the depth at the centroid of
-/// its samples, then micro triangles'. Only of pixels where it may make a difference.
+/// The order in which the filter takes fragments: a piece's in a block by the depth at its samples'
+/// centroid, then micro triangles'. Only for pixels where it may matter.
 bool PackedFragments::find_arrivals(std::span<const Window> windows) {
   arrivals_.reserve(count_);
   std::uint64_t deep[kBlocks] = {};
@@ -121,7 +119,7 @@ bool PackedFragments::find_arrivals(std::span<const Window> windows) {
   bool told = true;
   std::size_t f = 0;
   for (const Window& w : windows) {
-    while ((keys_[f] & kIdMask) > w.piece->low) ++f;  // micro triangles
+    while ((keys_[f] & kIdMask) > w.piece->low) ++f;  // skips micro triangles
     const std::size_t end = f + static_cast<std::size_t>(parallel::popcount(w.mask));
     const std::uint32_t column = w.pixel % kPackedPitch / 8, row = w.pixel / kPackedPitch / 8;
     std::uint32_t arrival[2][2] = {};
@@ -152,7 +150,6 @@ std::uint64_t PackedFragments::fragment_bytes() const {
   return kFragmentBytes + (filter_ != 0 ? sizeof(std::uint32_t) : 0);
 }
 
-/// Deals the fragments' sort_keys to their pixels.
 bool PackedFragments::deal() {
   sorted_ = false;
   std::size_t end = 0;
@@ -174,7 +171,7 @@ bool PackedFragments::deal() {
 }
 
 void PackedFragments::deal_sort_keys() {
-  // The last comes first, so that counts turn into places.
+  // From the last on, so that counts turn into places.
   for (std::size_t f = count_; f-- > 0;) {
     const std::size_t pixel = pixels_[f];
     const std::size_t k = --left_[pixel];
@@ -198,12 +195,12 @@ void PackedFragments::sort() {
     }
 }
 
-/// Sorts a row, which is in the order of arrivals, by the filter. Pixels with at most filter_ + 1
-/// fragments come out right in whatever order these are.
+/// Sorts a row from the order of arrivals. Pixels with at most filter_ + 1 fragments come out right
+/// in any order.
 std::uint8_t PackedFragments::filter(const Row& r) {
   std::uint64_t* const sort_keys = sort_keys_.data() + r.begin;
   for (std::size_t k = 0; k < std::size_t{r.layers} * 8; ++k) {
-    // Without a branch: what is none is looked up as the first one.
+    // Without a branch: an empty place looks up the first fragment.
     const std::uint64_t low = sort_keys[k] & kIdMask;
     const std::size_t number = low == 0 ? 0 : number_of_sort_key(low);
     sort_keys[k] = low == 0 ? 0 : packed_sort_key(keys_[number], number);
@@ -248,11 +245,10 @@ void PackedFragments::shade_wanted(const raster::BinContext& context,
                                   grid_.bx * kBlockSize,
                                   grid_.by * kBlockSize};
   if (shade_runs(shading, *context.frame, runs, context.request->isa, colors_.data() + 1)) return;
-  // Where only some are wanted, rows of 8 mostly are as a whole, as a triangle's fragments lie side
-  // by side; so they stay where they are.
+  // Rows of 8 fragments stay in place: mostly they are one triangle's, wanted as a whole.
   const std::size_t blocks = (count_ + 63) / 64;
   for (std::size_t b = 0; b < blocks; ++b) {
-    // While this block is shaded, the vertices of the next come from memory.
+    // Prefetches the vertices of the next block.
     if (b + 1 < blocks)
       for (std::uint64_t m = wanted_[b + 1] & first_[b + 1]; m != 0; m &= m - 1) {
         const std::size_t number = (b + 1) * 64 + static_cast<std::size_t>(std::countr_zero(m));
@@ -328,7 +324,7 @@ bool PackedFragments::any(int bx, int by) const {
 void PackedFragments::raise(int bx, int by, std::uint64_t* keys) const {
   for (int y = 0; y < kBlockSize; ++y, keys += 8) {
     const Row& r = row(bx, by, y);
-    // Sorted, the first is the nearest.
+    // If sorted, the first is the nearest.
     const std::size_t layers = sorted_ ? std::min(r.layers, 1U) : r.layers;
     std::uint64_t nearest[8] = {};
     for (std::size_t k = 0; k < layers; ++k)

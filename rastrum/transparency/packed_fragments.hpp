@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The translucent fragments of a region in the order of submission, in which those of a triangle
-// lie side by side. They are shaded in that order, 64 at a time whatever their pixels, because a
-// triangle is then set up for shading once and interpolated for a few full vectors, not for a part
-// of each row that it touches. Only their numbers are sorted, by pixel. This is for regions of
-// moderate depth: deeper ones go plane by plane (layers.cpp).
+// The translucent fragments of a region in the order of submission, in which a triangle's lie side
+// by side. They are shaded in that order, 64 at a time, so a triangle is set up for shading once
+// and fills vectors. Only their numbers are sorted, by pixel. For moderate depth; deeper regions go
+// plane by plane (layers.cpp).
 //
-// Paper 4 shades fragments before they are in order, too ("Phase 3": segments of 256 samples).
+// Paper 4 also shades fragments before they are in order ("Phase 3": segments of 256 samples).
 #pragma once
 
 #include <algorithm>
@@ -23,17 +22,16 @@ namespace rastrum::transparency {
 
 /// At most 8 × 8 blocks, row by row.
 struct BlockGrid {
-  int bx, by;  ///< of the first block
+  int bx, by;  ///< the first block
   int columns, rows;
 };
 
-/// The translucent fragments of micro triangles of a region, in the order in which they were made.
+/// A region's translucent fragments of micro triangles, as they were made.
 class MicroRecords {
  public:
   explicit MicroRecords(MemoryAccount& memory) : keys_(memory), pixels_(memory) {}
 
   void restart() { count_ = 0; }
-  /// As PackedKernels::take has it.
   std::size_t take(const PackedKernels& kernel, std::span<const raster::BinFragment> fragments,
                    std::uint32_t first) {
     reserve(fragments.size());
@@ -75,48 +73,40 @@ class PackedFragments {
         wanted_(memory),
         arrivals_(memory) {}
 
-  /// Begins a region. `bytes`: what its fragments may take with their sort_keys, 0 for the default
-  /// of 4 MiB.
+  /// `bytes`: the limit of its fragments with their sort_keys; 0: 4 MiB.
   void begin(Isa isa, std::uint64_t bytes);
-  /// Over how many fragments of a pixel `sort` looks back where more than one more than that lie
-  /// (layer_lists.hpp); 0, which is what `begin` says: all. Then pixels have `most` layers, or
-  /// `collect` refuses.
+  /// `sort` looks back over `filter` fragments in pixels with more than filter + 1
+  /// (layer_lists.hpp); 0, which `begin` sets: over all. With a filter, `collect` refuses pixels of
+  /// more than `most` layers.
   void set_filter(std::size_t filter, std::size_t most) {
     filter_ = filter;
     most_layers_ = most;
   }
 
-  /// Collects the fragments that lie before the keys of `opaque`; null: all. Returns false and
-  /// collects nothing if there are too many for the memory, or if they do not come in the order of
-  /// ids.
+  /// Collects the fragments before the keys of `opaque` (may be null). Returns false and collects
+  /// nothing if they take too much memory, or do not come in the order of ids.
   bool collect(std::span<const Window> windows, const MicroFragments& micro, const BlockGrid& grid,
                const raster::SurfaceView* opaque);
-  /// Puts the nearest first, as far as the filter can; they are in the order of submission before.
+  /// Nearest first, as far as the filter can.
   void sort();
-  /// The pixels of a block where the filter was too short.
+  /// Pixels of a block where the filter was too short.
   [[nodiscard]] std::uint64_t misplaced(int bx, int by) const;
-  /// `opaque_at` as LayerBlend has it: above 0 they must be sorted, and layers behind which it
-  /// hides need not be shaded.
+  /// Above an `opaque_at` of 0 the fragments must be sorted, and hidden layers need not be shaded.
   void shade(const raster::BinContext& context, const raster::Shading& shading, float opaque_at);
-  /// Whether the block has any of them.
   [[nodiscard]] bool any(int bx, int by) const;
-  /// Raises the keys of a block to those of the nearest fragments.
   void raise(int bx, int by, std::uint64_t* keys) const;
-  /// Blends the layers of a block, which were shaded and are in the order that `blend` wants,
-  /// before `behind`, which may be null: nothing.
+  /// Blends a block's shaded layers, in the order of `blend`, over `behind`, which may be null.
   void blend(int bx, int by, LayerBlend& blend, const raster::BlockColors* behind,
              raster::BlockColors& out);
-  /// Whether the block has opaque surfaces behind its fragments.
   [[nodiscard]] bool has_opaque(int bx, int by) const {
     return opaque_[(by - grid_.by) * grid_.columns + bx - grid_.bx] != nullptr;
   }
 
   [[nodiscard]] std::size_t fragments() const { return count_; }
-  /// The most fragments that a pixel has.
   [[nodiscard]] std::size_t deepest() const { return deepest_; }
 
  private:
-  /// Eight pixels of a row and their sort_keys, `layers` times 8, from sort_keys_[begin] on.
+  /// Eight pixels: `layers` times 8 sort_keys from sort_keys_[begin] on.
   struct Row {
     std::uint32_t begin, layers;
   };
@@ -129,15 +119,12 @@ class PackedFragments {
   bool deal();
   void deal_sort_keys();
   [[nodiscard]] std::uint8_t filter(const Row& row);
-  /// Shades those that `wanted_` has.
   void shade_wanted(const raster::BinContext& context, const raster::Shading& shading);
-  /// Shades the nearest layers and then, as far as pixels are not finished, twice as many and so
-  /// on.
+  /// Shades the nearest layers, then twice as many of unfinished pixels, and so on.
   void shade_by_turns(const raster::BinContext& context, const raster::Shading& shading,
                       float opaque_at);
-  /// Leaves out the layers of each pixel behind the first `most`.
+  /// Leaves out the layers behind each pixel's first `most`.
   void leave_out_behind(std::uint32_t most);
-  /// A pass of a method that wants to see a layer of all pixels at a time.
   void blend_planes(int bx, int by, LayerBlend& blend);
   [[nodiscard]] const Row& row(int bx, int by, int y) const { return rows_[row_number(bx, by, y)]; }
   [[nodiscard]] int row_number(int bx, int by, int y) const {
@@ -150,7 +137,7 @@ class PackedFragments {
   BlockGrid grid_{};
   static constexpr int kBlocks =
       kPackedPitch / raster::kBlockSize * (kPackedPitch / raster::kBlockSize);
-  const std::uint64_t* opaque_[kBlocks] = {};  ///< by block of the grid; null: none
+  const std::uint64_t* opaque_[kBlocks] = {};  ///< per block of the grid, may be null
   bool sorted_ = false;
   std::size_t filter_ = 0, most_layers_ = 0;
 
@@ -160,15 +147,15 @@ class PackedFragments {
   ScratchBuffer<Vec4> colors_;  ///< by number + 1
   ScratchBuffer<std::uint64_t> sort_keys_;
   ScratchBuffer<std::uint64_t> first_,
-      wanted_;                             ///< a bit a fragment: first of a triangle; to be shaded
-  ScratchBuffer<std::uint32_t> arrivals_;  ///< of pixels that the filter may fail, largest first
+      wanted_;                             ///< bits: the first of a triangle; to be shaded
+  ScratchBuffer<std::uint32_t> arrivals_;  ///< of pixels where the filter may fail, largest first
   bool wanted_all_ = false;
   std::size_t deepest_ = 0;
   Row rows_[kRows];
-  std::uint16_t most_[kRows];      ///< layers of a row, hidden ones, too
-  std::uint8_t misplaced_[kRows];  ///< a bit a pixel
-  alignas(64) std::uint16_t left_[kPackedPitch * kPackedPitch];  ///< fragments of a pixel to deal
-  float through_[kPackedPitch * kPackedPitch];                   ///< by turns: seen through a pixel
+  std::uint16_t most_[kRows];      ///< layers of a row, including hidden ones
+  std::uint8_t misplaced_[kRows];  ///< a bit per pixel
+  alignas(64) std::uint16_t left_[kPackedPitch * kPackedPitch];  ///< fragments without a place yet
+  float through_[kPackedPitch * kPackedPitch];                   ///< in shade_by_turns
   raster::ShadingPoints points_;
   raster::BlockColors plane_;
   alignas(64) std::uint64_t plane_keys_[64];

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Packed fragments in vectors with Highway, compiled once per instruction set.
 //
-// SortKeys are sorted by networks, a vector of pixels at once: lists are short, what their order is
-// cannot be predicted, and a network has no branches. Up to 8 sort_keys it runs in registers;
-// beyond that it is Batcher's merge exchange (Knuth, TAOCP 3, 5.2.2 M), O(n log² n) for any n.
+// SortKeys are sorted by networks, a vector of pixels at once: lists are short, their order is
+// unpredictable, and a network has no branches. Up to 8 it runs in registers; beyond it is
+// Batcher's merge exchange (Knuth, TAOCP 3, 5.2.2 M), O(n log² n).
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/transparency/packed_simd.cpp"
@@ -50,13 +50,12 @@ HWY_NOINLINE std::size_t pack_quadric(const raster::Piece& p, std::uint64_t mask
   return n;
 }
 
-/// Whole rows of 8 pixels where vectors are long enough.
+/// Whole rows of 8 pixels if vectors are long enough.
 using S64 = hn::CappedTag<std::int64_t, 8>;
 using SortKeys = hn::Vec<S64>;
 constexpr std::size_t kLanesS64 = hn::MaxLanes(S64{});
 using Pixels = hn::CappedTag<std::uint16_t, kLanesS64>;
 
-/// How many lanes, from the first one on, are true.
 template <class Mask>
 HWY_INLINE std::size_t leading_true(Mask mask) {
   std::uint8_t bits[8] = {};
@@ -75,7 +74,7 @@ std::size_t take(std::span<const raster::BinFragment> fragments, std::uint32_t f
     hn::Vec<decltype(d)> key, other;
     hn::LoadInterleaved2(d, reinterpret_cast<const std::uint64_t*>(fragments.data() + n), key,
                          other);
-    // Row and column of the block, then of the pixel in it; here both rows come first.
+    // From (block row, block column, row, column) to (block row, row, block column, column).
     const auto at = hn::ShiftRight<32>(other);
     const auto pixel =
         hn::Or(hn::Or(hn::And(at, field(0xE07)), hn::And(hn::ShiftRight<3>(at), field(0x38))),
@@ -94,7 +93,7 @@ std::size_t take(std::span<const raster::BinFragment> fragments, std::uint32_t f
   return n;
 }
 
-/// Windows one behind the other, so that the processor overlaps what each waits for.
+/// Windows do not depend on each other, so the processor overlaps them.
 std::size_t pack(std::span<const Window> windows, const MicroFragments& micro,
                  const PackedPlace& place, std::uint64_t* keys, std::uint16_t* pixels) noexcept {
   constexpr float kPxPerSubpixel = 1.0F / raster::kSubpixels;
@@ -108,7 +107,7 @@ std::size_t pack(std::span<const Window> windows, const MicroFragments& micro,
   const F half = hn::Set(d, 0.5F);
   const auto id = hn::Set(S64{}, static_cast<std::int64_t>(raster::kIdMask));
   std::size_t n = 0, m = 0;
-  // Adds the micro triangles' fragments whose ids are smaller, so that their low parts are larger.
+  // Fragments of micro triangles with smaller ids, so larger low parts.
   const auto add_micro = [&](std::uint64_t low) HWY_ATTR {
     const auto of_window = hn::Set(S64{}, static_cast<std::int64_t>(low));
     while (m < micro.count) {
@@ -139,7 +138,7 @@ std::size_t pack(std::span<const Window> windows, const MicroFragments& micro,
     const I base = hn::Set(I32{}, static_cast<std::int32_t>(first));
     const I x = hn::Set(I32{}, place.x), y = hn::Set(I32{}, place.y);
     for (std::size_t i = 0; i < count; i += kLanes) {
-      // In a register, because a vector that is read over bytes just written waits for all of them.
+      // In a register: a vector load of bytes just written would wait for all of them.
       Bytes samples = 0;
       for (std::size_t lane = 0; lane < kLanes; ++lane) {
         samples |= static_cast<Bytes>(std::countr_zero(mask) & 63) << (8 * lane);
@@ -208,7 +207,7 @@ void points(const std::uint16_t* pixels, raster::ShadingPoints& points) noexcept
   }
 }
 
-/// SortKeys stay below 2^63, so they compare as signed numbers do, which AVX2 has.
+/// SortKeys stay below 2^63, so AVX2's signed comparisons suffice.
 HWY_INLINE void larger_first(SortKeys& a, SortKeys& b) {
 #if HWY_TARGET == HWY_AVX3
   const SortKeys larger = hn::Max(a, b);
@@ -235,7 +234,6 @@ void sort_2(std::int64_t* column) {
   store_sort_keys(b, column, 1);
 }
 
-/// 5 exchanges.
 HWY_INLINE void network_4(SortKeys& a, SortKeys& b, SortKeys& c, SortKeys& d) {
   larger_first(a, b);
   larger_first(c, d);
@@ -318,7 +316,7 @@ std::uint8_t filter(std::uint64_t* sort_keys, std::size_t layers, std::size_t fi
     for (std::size_t n = 1; n < layers; ++n) {
       SortKeys own = load_sort_keys(column, n);
       const std::size_t first = n > filter ? n - filter : 0;
-      // Where lists are in order, what it passes there it passes here, too.
+      // In an ordered list a key that passes this one passes all behind it, too.
       if (first > 0) too_far = hn::Or(too_far, hn::Gt(own, load_sort_keys(column, first - 1)));
       for (std::size_t k = first; k < n; ++k) {
         SortKeys other = load_sort_keys(column, k);
@@ -346,14 +344,13 @@ void gather(const PackedRow& row, std::size_t first, raster::BlockColors& out) n
     store(load_colors(row.sort_keys + part, row.colors), out, first + part);
 }
 
-/// The layers of pixels `part` … of a row behind what is seen.
 template <bool kStops>
 HWY_INLINE void add_layers(const PackedRow& row, std::size_t part, float opaque_at,
                            SeenPixel& pixel) {
   for (std::size_t k = 0; k < row.layers; ++k) {
     V4 c = load_colors(row.sort_keys + k * 8 + part, row.colors);
     if constexpr (kStops) {
-      // Layers that a finished pixel hides may never have been shaded.
+      // Layers behind a finished pixel may never have been shaded.
       const auto unfinished = hn::Not(pixel.through <= set(opaque_at));
       if (hn::AllFalse(F32{}, unfinished)) break;
       c = choose_or_zero(unfinished, c);

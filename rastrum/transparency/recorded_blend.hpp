@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A blend that hands on what it is given: the layers of a frame whose FragmentSink takes colours,
-// as many of a pixel as the method itself would look at.
+// Also sends its layers to the FragmentSink of the frame, as many per pixel as the method looks at.
 #pragma once
 
 #include <rastrum/raster/context/fragment_sink.hpp>
@@ -10,12 +9,11 @@ namespace rastrum::transparency {
 
 class RecordedBlend final : public LayerBlend {
  public:
-  /// Both outlive its use.
+  /// Both must outlive its use.
   void begin(LayerBlend& method, raster::FragmentSink& sink) {
     method_ = &method;
     sink_ = &sink;
   }
-  /// The block that begins next.
   void place(int bx, int by) {
     bx_ = bx;
     by_ = by;

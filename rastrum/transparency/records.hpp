@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The records that a region of layers makes while its pieces are enumerated, and the first stage of
-// their sort: by block (the per-block lists of paper 4, stage 3, phase 2), and in a block by depth.
+// The records of a region of layers, sorted first by block (the per-block lists of paper 4, stage
+// 3, phase 2), then by depth.
 #pragma once
 
 #include <algorithm>
@@ -16,19 +16,19 @@
 
 namespace rastrum::transparency {
 
-/// A piece's samples in 8 × 8 pixels of a region, which may begin anywhere.
+/// 8 × 8 pixels anywhere in a region.
 struct Window {
   const raster::Piece* piece;
   std::uint64_t mask;   ///< of samples, not empty
-  std::uint32_t pixel;  ///< the first one: kPackedPitch · row + column
+  std::uint32_t pixel;  ///< the first: kPackedPitch · row + column
 };
 
-/// Calls f(column, row, mask) for the blocks that a window touches whose first pixel is (x, y).
+/// Calls f(column, row, mask) for the blocks that a window at pixel (x, y) touches.
 template <class F>
 void for_each_block_of(std::uint64_t mask, std::uint32_t x, std::uint32_t y, F&& f) {
   constexpr auto kSize = static_cast<std::uint32_t>(raster::kBlockSize);
   const std::uint32_t column = x / kSize, row = y / kSize, dx = x % kSize, dy = y % kSize;
-  // Samples that stay in the first column of blocks, and in the first row.
+  // Samples in the first column and the first row of blocks.
   const std::uint64_t left = (std::uint64_t{0xFF} >> dx) * 0x0101010101010101U;
   const std::uint64_t top = ~std::uint64_t{0} >> (kSize * dy);
   const auto give = [&](std::uint32_t c, std::uint32_t r, std::uint64_t part) {
@@ -42,7 +42,7 @@ void for_each_block_of(std::uint64_t mask, std::uint32_t x, std::uint32_t y, F&&
   if (dx != 0) give(column + 1, row + 1, (below & ~left) >> (kSize - dx));
 }
 
-/// How many those are, without a branch that could not be predicted.
+/// Their number, without a branch that could not be predicted.
 inline std::uint64_t blocks_of_window(std::uint64_t mask, std::uint32_t x, std::uint32_t y) {
   constexpr auto kSize = static_cast<std::uint32_t>(raster::kBlockSize);
   const std::uint64_t left = mask & (std::uint64_t{0xFF} >> x % kSize) * 0x0101010101010101U;
@@ -51,21 +51,18 @@ inline std::uint64_t blocks_of_window(std::uint64_t mask, std::uint32_t x, std::
          std::uint64_t{(left & ~top) != 0} + std::uint64_t{(right & ~top) != 0};
 }
 
-/// A piece's part of a block.
 struct Record {
   const raster::Piece* piece;
   std::uint64_t mask;   ///< of samples, not empty
   std::uint32_t block;  ///< within the region
 };
 
-/// A fragment of a micro triangle.
 struct MicroRecord {
   std::uint64_t key;
   std::uint32_t block;
   std::uint32_t pixel;  ///< 8 · row + column
 };
 
-/// Records in the order in which they were made.
 template <class T>
 class InOrder {
  public:
@@ -76,13 +73,12 @@ class InOrder {
     records_.grow(count_ + 1, count_);
     records_[count_++] = record;
   }
-  /// Room for n more; say with `added` how many were written.
+  /// `room` returns space for n more; `added` says how many were written.
   [[nodiscard]] T* room(std::size_t n) {
     records_.grow(count_ + n, count_);
     return records_.data() + count_;
   }
   void added(std::size_t n) { count_ += n; }
-  /// Where `room` is.
   [[nodiscard]] T* end() { return records_.data() + count_; }
   [[nodiscard]] std::size_t size() const { return count_; }
   [[nodiscard]] std::span<T> in_order() { return {records_.data(), count_}; }
@@ -96,13 +92,12 @@ class InOrder {
   std::size_t count_ = 0;
 };
 
-/// The same, then by block, still in that order.
+/// Also sorts them by block, stably.
 template <class T>
 class ByBlock : public InOrder<T> {
  public:
   explicit ByBlock(MemoryAccount& memory) : InOrder<T>(memory), sorted_(memory), begin_(memory) {}
 
-  /// Counting sort.
   void sort(std::size_t blocks) {
     sorted_.reserve(count_);
     begin_.reserve(blocks + 2);
@@ -122,7 +117,7 @@ class ByBlock : public InOrder<T> {
   ScratchBuffer<std::uint32_t> begin_;
 };
 
-/// Sums of a mask's samples: how many, and of their columns and rows.
+/// Sums over the samples of a mask.
 struct MaskSums {
   int count, columns, rows;
 };
@@ -145,7 +140,7 @@ struct MaskSums {
   return {weighed(rows, kOne), weighed(columns, kOne), weighed(rows, 0x0001020304050607U)};
 }
 
-/// Depth of a piece at the mean of the samples of block (bx, by): the first sort_key of the sort.
+/// At the mean of its samples in block (bx, by).
 [[nodiscard]] RASTRUM_HD inline float centroid_depth(const raster::Piece& piece, std::uint64_t mask,
                                                      int bx, int by) {
   if (raster::is_quadric(piece)) {
@@ -165,7 +160,7 @@ struct MaskSums {
   return piece.z0 + piece.zx * dx + piece.zy * dy;
 }
 
-/// The high half of a sort_key that sorts the nearest first.
+/// The high half of a sort_key, nearest first.
 [[nodiscard]] RASTRUM_HD inline std::uint64_t near_first(const raster::Piece& piece,
                                                          std::uint64_t mask, int bx, int by) {
   const float depth = centroid_depth(piece, mask, bx, by);

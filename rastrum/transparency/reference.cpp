@@ -24,10 +24,9 @@ using raster::BlockColors;
 using raster::kBlockSize;
 using raster::Piece;
 
-/// A triangle, or one side of a quadric, in a pixel: its key at each sample that it covers, and
-/// where it is shaded.
+/// A triangle, or one side of a quadric, in a pixel.
 struct Fragment {
-  std::uint64_t keys[raster::kMaxSamples] = {};  ///< 0: not covered
+  std::uint64_t keys[raster::kMaxSamples] = {};  ///< at each sample; 0: not covered
   std::uint64_t shaded_key = 0;                  ///< where it is shaded
   float dx = 0, dy = 0;                          ///< of that place, px from the centre
   bool translucent = false;
@@ -36,10 +35,10 @@ struct Fragment {
 
 using Pixel = std::vector<Fragment>;
 
-/// Row, column, and whether it is the side of a quadric that faces away.
+/// Row, column, and whether it is the back of a quadric.
 using Place = std::tuple<int, int, bool>;
 
-/// The keys of a primitive at one sample, by pixel: the nearest where its pieces overlap.
+/// By pixel; the nearest where the primitive's pieces overlap.
 void add_keys(const raster::FrameRequest& request, const Piece& piece,
               std::map<Place, Fragment>& pixels, int sample) {
   const bool away = raster::is_quadric(piece) && (piece.flags & raster::kFacesAway) != 0;
@@ -51,7 +50,6 @@ void add_keys(const raster::FrameRequest& request, const Piece& piece,
   });
 }
 
-/// A block with the one sample of pixel (x, y).
 raster::Block block_of(int x, int y) {
   return {0, static_cast<std::uint16_t>(x / kBlockSize), static_cast<std::uint16_t>(y / kBlockSize),
           std::uint64_t{1} << (y % kBlockSize * kBlockSize + x % kBlockSize)};
@@ -63,7 +61,6 @@ struct Scene {
   const raster::FrameGeometry& frame;
   std::vector<Pixel> pixels;
 
-  /// Whether the fragment passes the test.
   bool keeps(const raster::Draw& draw, std::uint64_t primitive, const Place& place,
              const Fragment& f) {
     const auto [y, x, away] = place;
@@ -92,7 +89,7 @@ struct Scene {
           static_cast<std::uint32_t>(s), offsets[s]);
       if (here != raster::Fate::culled) fate = here;
     }
-    // Shaded at the centre where the triangle covers it, else at the first sample that it covers.
+    // Shaded at the centre if the triangle covers it, else at the first sample that it covers.
     std::map<Place, Fragment> centres;
     (void)raster::assemble_primitive(frame, draw, primitive,
                                      [&](const Piece& p) { add_keys(request, p, centres, -1); });
@@ -143,8 +140,7 @@ struct Scene {
     return {colors.r[i], colors.g[i], colors.b[i], opaque ? 1.0F : colors.a[i]};
   }
 
-  /// The pixel's colour, in its place of `colors`; returns its key. Begins with the key that the
-  /// passes before have left there.
+  /// `loaded` is the key from earlier passes. Returns the pixel's key.
   std::uint64_t resolve(int x, int y, std::uint64_t loaded, LayerBlend& blend,
                         BlockColors& colors) {
     const Pixel& fragments =

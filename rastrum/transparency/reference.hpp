@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The reference of layers: every fragment of every pixel in a list, sorted, shaded one by one.
-// Written for plainness; the layered path must equal it.
 #pragma once
 
 #include <memory>
@@ -9,9 +8,8 @@
 
 namespace rastrum::transparency {
 
-/// Transparency and several samples a pixel on one thread. Memory: 40 bytes a fragment and sample.
-/// Frames throw Error{invalid_argument} for AddedTransparency::filter, whose errors are those of
-/// blocks, which it does not have.
+/// One thread. Memory: 40 bytes per fragment and sample. Frames throw Error{invalid_argument} for
+/// AddedTransparency::filter, whose errors depend on blocks.
 [[nodiscard]] std::unique_ptr<raster::Method> make_layered_reference();
 
 }  // namespace rastrum::transparency

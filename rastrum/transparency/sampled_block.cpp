@@ -14,7 +14,7 @@ using raster::BlockColors;
 using raster::kBlockSize;
 using raster::Piece;
 
-/// The pieces that a triangle was clipped to may overlap by a snapped vertex: the nearest counts.
+/// A clipped triangle's pieces may overlap by a snapped vertex: the nearest counts.
 template <class F>
 void SampledBlock::for_each_record(const Triangle& t, const std::uint64_t& pixels,
                                    std::optional<std::uint32_t> only, F&& f) {
@@ -46,7 +46,7 @@ void SampledBlock::for_each_record(const Triangle& t, const std::uint64_t& pixel
 
 /// In order of submission; a triangle's records by sample.
 void SampledBlock::find_triangles() {
-  // The pieces of a triangle face one way, those of a quadric are two surfaces.
+  // A triangle's pieces face one way; a quadric's are two surfaces.
   const auto away = [](const Record& r) { return r.piece->flags & raster::kFacesAway; };
   std::sort(records_.begin(), records_.end(), [&](const Record& a, const Record& b) {
     if (a.piece->low != b.piece->low) return a.piece->low > b.piece->low;
@@ -77,9 +77,8 @@ void SampledBlock::order_triangles() {
   if (by_depth) std::sort(order_.data(), order_.data() + triangle_count_);
 }
 
-/// Calls f(piece) for the pieces of `piece`'s primitive as they lie at the pixels' centres. Clipped
-/// primitives are clipped again: another piece may cover a centre, and cover no sample of this
-/// block.
+/// Calls f(piece) for the pieces of `piece`'s primitive at the pixels' centres. Clipped primitives
+/// are clipped again: a piece may cover a centre but no sample of this block.
 template <class F>
 void SampledBlock::for_each_piece_at_centre(const Piece& piece, F&& f) {
   if ((piece.flags & raster::kClipped) != 0) {
@@ -167,7 +166,6 @@ void SampledBlock::find_shown() {
   }
 }
 
-/// Fragments of `pixels_` that a sample may see.
 std::size_t SampledBlock::count_shown() const {
   std::size_t count = 0;
   for (std::uint32_t k = 0; k < triangle_count_; ++k)
@@ -175,7 +173,7 @@ std::size_t SampledBlock::count_shown() const {
   return count;
 }
 
-/// Fragments of several triangles are shaded together where they lie at different pixels.
+/// Fragments of several triangles are shaded together if their pixels differ.
 void SampledBlock::shade(std::size_t count) {
   color_count_ = 1;
   colors_.reserve(count + 1);
@@ -233,7 +231,7 @@ bool SampledBlock::find_behind(std::uint32_t sample, BlockColors& behind) const 
   return any;
 }
 
-/// The fragments of all samples to layers_. Returns false where there are too many.
+/// Returns false if there are too many fragments.
 bool SampledBlock::deal() {
   const LayerOrder order = blend_->order();
   const std::size_t filter = repair_ || order == LayerOrder::submission ? 0 : filter_;
@@ -258,7 +256,7 @@ bool SampledBlock::deal() {
   return layers_.deal(context_->request->samples, order, filter, planes_);
 }
 
-/// Adds all samples to `sum`. Returns false if the method takes no rows.
+/// Returns false if the method takes no rows.
 bool SampledBlock::blend_dealt(BlockColors& sum) {
   const auto samples = static_cast<std::uint32_t>(context_->request->samples);
   bool takes_rows = true;
@@ -352,8 +350,7 @@ LayerCounts SampledBlock::resolve(const raster::BinContext& context, const raste
   return counts;
 }
 
-/// Sets the colours of `pixels`, which lie in a row of the block's 64: one half after the other
-/// where the colours of all fragments take more than planes may.
+/// Goes half by half if all fragments' colours need more memory than planes may.
 void SampledBlock::blend_pixels(std::uint64_t pixels, LayerCounts& counts, BlockColors& out) {
   pixels_ = pixels;
   const std::size_t count = count_shown();
@@ -384,7 +381,6 @@ void SampledBlock::blend_pixels(std::uint64_t pixels, LayerCounts& counts, Block
   }
 }
 
-/// The fragment test, once a triangle and pixel.
 void SampledBlock::test() {
   if (!context_->plan->tests) return;
   Shaded own;

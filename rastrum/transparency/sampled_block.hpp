@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A block with several samples a pixel (anti-aliasing, which paper 4 leaves as future work): the
-// records are of pieces moved to each sample (raster/rules/samples.hpp). Every sample has its own
-// order of fragments and its own opaque surface; colour and fragment test are a triangle's in a
-// pixel, found once, at the pixel's centre if the triangle covers it, else at the first sample that
-// it covers.
+// A block with several samples per pixel (anti-aliasing, paper 4's future work). Pieces are moved
+// to each sample (raster/rules/samples.hpp), which has its own order of fragments and its own
+// opaque surface. A triangle has one colour and one fragment test in a pixel: at the centre if it
+// covers that, else at the first sample that it covers.
 #pragma once
 
 #include <algorithm>
@@ -40,11 +39,10 @@ class SampledBlock {
       : triangles_(memory), order_(memory), colors_(memory), lists_(memory), layers_(memory) {}
 
   /// Sets the block's colours (the mean over the samples, premultiplied) and keys (the largest).
-  /// `records`: of opaque and translucent pieces; they are reordered. `filter` and `planes` as
-  /// LayerLists::restart has them; `repair`: sort what the filter misplaced.
-  /// Memory: 16 bytes a fragment that is shaded, at most as much as `planes` take: else the block's
-  /// pixels are blended in parts. 14 bytes a fragment of a sample and 8 bytes a pixel and layer; 12
-  /// of these, one sample after the other, where that is more than `planes` take.
+  /// Reorders `records`. `filter` and `planes` as in LayerLists::restart; `repair`: sort what the
+  /// filter misplaced. Memory: 16 bytes per shaded fragment, at most as much as `planes`: else the
+  /// pixels are blended in parts. 14 bytes per fragment of a sample and 8 bytes per pixel and
+  /// layer; or, if that exceeds `planes`, 12 of these, one sample after the other.
   LayerCounts resolve(const raster::BinContext& context, const raster::Shading& shading,
                       LayerBlend& blend, std::span<Record> records, int bx, int by,
                       std::size_t filter, std::size_t planes, bool repair, std::uint64_t* keys,
@@ -53,14 +51,14 @@ class SampledBlock {
  private:
   static constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-  /// The records of one triangle, or one side of a quadric, in the block, of all samples.
+  /// One triangle, or one side of a quadric, at all samples of the block.
   struct Triangle {
     std::uint32_t first, end;
     std::uint64_t kept;   ///< pixels that the fragment test leaves
-    std::uint64_t shown;  ///< pixels where a sample may see it
-    std::uint32_t color;  ///< of the first pixel of shown(t) in colors_
+    std::uint64_t shown;  ///< pixels where a sample may show it
+    std::uint32_t color;  ///< in colors_, of the first pixel of shown(t)
   };
-  /// Where a triangle is shaded: keys and points of its pixels.
+  /// The places at which a triangle's pixels are shaded.
   struct Shaded {
     alignas(64) std::uint64_t keys[64];
     raster::ShadingPoints points;
@@ -80,7 +78,7 @@ class SampledBlock {
   void shade(std::size_t count);
   void flush(Shaded& plane);
   [[nodiscard]] std::uint64_t shown(const Triangle& t) const { return t.shown & pixels_; }
-  /// Where the colour of pixel i of shown(t) is in colors_.
+  /// The index of pixel i of shown(t) in colors_.
   [[nodiscard]] std::uint32_t place_of(const Triangle& t, int i) const {
     const std::uint64_t before = shown(t) & ((std::uint64_t{1} << i) - 1);
     return t.color + static_cast<std::uint32_t>(parallel::popcount(before));
@@ -88,7 +86,7 @@ class SampledBlock {
   [[nodiscard]] const Vec4& color(std::uint32_t triangle, int i) const {
     return colors_[place_of(triangles_[triangle], i)];
   }
-  /// The opaque surface of a sample: false if there is none.
+  /// False if a sample has no opaque surface.
   [[nodiscard]] bool find_behind(std::uint32_t sample, raster::BlockColors& behind) const;
   [[nodiscard]] bool deal();
   [[nodiscard]] bool blend_dealt(raster::BlockColors& sum);
@@ -97,28 +95,27 @@ class SampledBlock {
     return context_->request->transparency.method != Transparency::none &&
            (records_[t.first].piece->flags & kTranslucent) != 0;
   }
-  /// Calls f(sample, mask, keys) for what a triangle covers of `pixels` at one sample or each. f
-  /// may leave pixels out of those for the samples that follow.
+  /// Calls f(sample, mask, keys) for the parts of `pixels` that a triangle covers, at one sample or
+  /// each. f may remove pixels for later samples.
   template <class F>
   void for_each_record(const Triangle& t, const std::uint64_t& pixels,
                        std::optional<std::uint32_t> only, F&& f);
 
   const raster::BinContext* context_ = nullptr;
-  raster::Shading shading_;  ///< none: no colour is wanted
+  raster::Shading shading_;  ///< empty: no colour is wanted
   LayerBlend* blend_ = nullptr;
   std::span<Record> records_;
   int bx_ = 0, by_ = 0;
   std::size_t filter_ = 0, planes_ = 0;
   bool repair_ = false;
-  std::uint64_t pixels_ = 0;  ///< those that are blended now
+  std::uint64_t pixels_ = 0;  ///< now being blended
 
   ScratchBuffer<Triangle> triangles_;
   std::uint32_t triangle_count_ = 0;
-  ScratchBuffer<std::uint64_t>
-      order_;                   ///< of the triangles, as insertion wants them: in the low half
-  ScratchBuffer<Vec4> colors_;  ///< the first one is 0: of no fragment
+  ScratchBuffer<std::uint64_t> order_;  ///< triangles in the order of insertion, in the low half
+  ScratchBuffer<Vec4> colors_;          ///< the first is 0, of no fragment
   std::uint32_t color_count_ = 0;
-  std::vector<std::uint32_t> plane_triangles_;  ///< whose fragments wait to be shaded
+  std::vector<std::uint32_t> plane_triangles_;  ///< with fragments to be shaded
   LayerLists<std::uint32_t> lists_;             ///< owner: the triangle
   SampledLayers layers_;
   bool has_opaque_ = false;  ///< else no key is behind an opaque one

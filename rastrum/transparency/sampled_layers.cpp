@@ -21,7 +21,7 @@ bool SampledLayers::deal(int samples, LayerOrder order, std::size_t filter,
   if (filter != 0 && deepest_ > most_layers) return false;
   sort_keys_.reserve(end);
   std::fill_n(sort_keys_.data(), end, 0U);
-  // The last comes first, so that counts turn into places.
+  // From the last on, so that counts turn into places.
   for (std::size_t f = count_; f-- > 0;) {
     const std::size_t place = places_[f];
     const std::size_t k = --left_[place];

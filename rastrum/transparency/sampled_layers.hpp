@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The translucent fragments of a block with several samples a pixel as rows of sort_keys, 8 pixels
-// of a sample each, so that they are sorted and blended in lanes as packed fragments are.
+// The translucent fragments of a block with several samples per pixel, in rows of 8 pixels of one
+// sample, for the kernels of packed fragments.
 #pragma once
 
 #include <bit>
@@ -19,14 +19,13 @@ class SampledLayers {
   explicit SampledLayers(MemoryAccount& memory)
       : keys_(memory), numbers_(memory), places_(memory), sort_keys_(memory) {}
 
-  /// Begins a block. `bytes`: what its fragments may take.
   void begin(Isa isa, std::uint64_t bytes) {
     kernel_ = &packed_kernels(isa);
     most_bytes_ = bytes;
     count_ = 0;
   }
-  /// Adds the pixels `mask` of a triangle at a sample, by order of submission unless `deal` is told
-  /// of a filter. Pixel i's colour is colors[number(i) + 1].
+  /// A triangle's pixels at a sample, in order of submission unless `deal` has a filter. Pixel i's
+  /// colour is colors[number(i) + 1].
   template <class Number>
   void add(std::uint32_t sample, std::uint64_t mask, const std::uint64_t* keys, Number&& number) {
     keys_.grow(count_ + 64, count_);
@@ -39,13 +38,11 @@ class SampledLayers {
       places_[count_] = static_cast<std::uint16_t>(sample * 64 + static_cast<std::uint32_t>(i));
     }
   }
-  /// Whether more may be added.
   [[nodiscard]] bool has_room() const {
     return count_ <= kMost && count_ * kFragmentBytes <= most_bytes_;
   }
-  /// Puts each pixel's fragments in `order`; with `filter` above 0 by a filter that looks back over
-  /// so many, in the order in which they were added. Returns false if rows take too much memory, or
-  /// have more than `most_layers`.
+  /// Puts each pixel's fragments in `order`. With `filter` above 0 a filter looks back over so
+  /// many, in the order of `add`. Returns false for too much memory or more than `most_layers`.
   [[nodiscard]] bool deal(int samples, LayerOrder order, std::size_t filter,
                           std::size_t most_layers);
 
@@ -54,9 +51,9 @@ class SampledLayers {
     return {sort_keys_.data() + r.begin, r.layers, colors};
   }
   [[nodiscard]] std::size_t fragments() const { return count_; }
-  /// The most fragments that a sample of a pixel has.
+  /// At one sample of a pixel.
   [[nodiscard]] std::size_t deepest() const { return deepest_; }
-  /// Pixels where the filter was too short, at any sample.
+  /// Pixels where the filter was too short at any sample.
   [[nodiscard]] std::uint64_t misplaced() const { return misplaced_; }
 
  private:
@@ -64,9 +61,9 @@ class SampledLayers {
     std::uint32_t begin, layers;
   };
   static constexpr std::size_t kRows = raster::kMaxSamples * 8;
-  /// A list is of 16-bit length; a triangle's part of a block is added as a whole.
+  /// A list has a 16-bit length; a triangle's part of a block is added as a whole.
   static constexpr std::size_t kMost = 65535 - 64;
-  /// Buffers that grow have up to twice of what is in them; a colour of the caller's.
+  /// Growing buffers hold up to twice their content; the colour is the caller's.
   static constexpr std::uint64_t kFragmentBytes = 2 * (8 + 4 + 2) + sizeof(Vec4);
 
   const PackedKernels* kernel_ = nullptr;
@@ -79,7 +76,7 @@ class SampledLayers {
   std::uint64_t misplaced_ = 0;
   Row rows_[kRows];
   std::uint16_t most_[kRows];
-  alignas(64) std::uint16_t left_[kRows * 8];  ///< fragments of a pixel to deal
+  alignas(64) std::uint16_t left_[kRows * 8];  ///< a pixel's fragments that have no place yet
 };
 
 }  // namespace rastrum::transparency

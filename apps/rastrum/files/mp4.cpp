@@ -47,7 +47,7 @@ std::string shortest(double value) {
   return error == std::errc{} ? std::string(text, end) : std::string();
 }
 
-/// A write to a pipe whose reader has gone must be an error, not the end of the program.
+/// A write to a pipe whose reader has gone must fail, not end the program.
 class IgnorePipeSignal {
  public:
   IgnorePipeSignal() {
@@ -74,7 +74,7 @@ struct Mp4Writer::Impl {
 
   explicit Impl(io::AtomicFile& f) : file(f) {}
   ~Impl() {
-    // Still open: the video is not wanted, whatever ffmpeg makes of it.
+    // A pipe still open means that the video is not wanted.
     if (pipe >= 0) ::close(pipe);
     if (child > 0) {
       ::kill(child, SIGTERM);
@@ -87,7 +87,7 @@ struct Mp4Writer::Impl {
 
   void start(const std::string& program, const std::vector<std::string>& arguments);
   void write(const std::vector<std::uint8_t>& bytes);
-  /// Closes the pipe and waits; throws with ffmpeg's own words unless it succeeded.
+  /// Closes the pipe and waits; throws with ffmpeg's words unless it succeeded.
   void wait(const char* otherwise);
 };
 
@@ -100,7 +100,7 @@ void Mp4Writer::Impl::start(const std::string& program, const std::vector<std::s
   if (said == nullptr || ::pipe2(ends, O_CLOEXEC) != 0) file.fail(std::strerror(errno));
   child = ::fork();
   if (child == 0) {
-    // Between fork and exec only calls that are safe with threads about.
+    // Between fork and exec only async-signal-safe calls are allowed.
     if (::dup2(ends[0], 0) < 0 || ::dup2(::fileno(said), 2) < 0 || ::fcntl(output, F_SETFD, 0) != 0)
       ::_exit(127);
     ::execv(program.c_str(), argv.data());
@@ -152,8 +152,7 @@ Mp4Writer::Mp4Writer(io::AtomicFile& file, int width, int height, double fps) {
   impl_ = std::make_unique<Impl>(file);
   impl_->row.resize(static_cast<std::size_t>(width) * 3);
   const std::string size = std::to_string(width) + "x" + std::to_string(height);
-  // The colours are sRGB's, whose primaries are BT.709's: said, so that players do not guess by
-  // size.
+  // Names sRGB's primaries, BT.709's, so that players do not guess by size.
   impl_->start(
       find_ffmpeg(),
       {"-hide_banner", "-loglevel", "error", "-nostdin", "-y", "-f", "rawvideo", "-pixel_format",
@@ -161,8 +160,7 @@ Mp4Writer::Mp4Writer(io::AtomicFile& file, int width, int height, double fps) {
        "scale=out_color_matrix=bt709:out_range=tv", "-c:v", "libx264", "-crf", "16", "-pix_fmt",
        "yuv420p", "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "iec61966-2-1",
        "-color_range", "tv", "-movflags", "+faststart", "-f", "mp4",
-       // The open file, not its name: where the program is ended before
-       // ffmpeg has begun, no file comes to be after all.
+       // The open file, not its name: if the program ends before ffmpeg begins, no file appears.
        "file:/dev/fd/" + std::to_string(::fileno(file.stream()))});
 }
 

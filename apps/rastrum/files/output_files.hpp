@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files that are written, all or none.
 #pragma once
 
 #include <cstddef>
@@ -18,10 +17,10 @@
 
 namespace rastrum::cli {
 
-/// The files of one picture, or of one run: none is seen before commit(), then all are.
+/// The files of one picture or one run. commit() makes all visible at once.
 class OutputFiles {
  public:
-  /// A file to write to. Requires that `output` is asked for. Throws Error{io}.
+  /// Requires that `output` is asked for. Throws Error{io}.
   [[nodiscard]] io::AtomicFile& begin(const Output& output);
   void commit();
 
@@ -29,16 +28,15 @@ class OutputFiles {
   std::list<io::AtomicFile> files_;
 };
 
-/// The kinds of image that a file can hold.
 using ImageOfFile =
     std::variant<ImageView<const Rgba8>, ImageView<const Vec4>, ImageView<const Vec3>,
                  ImageView<const Vec2>, ImageView<const float>, ImageView<const std::int64_t>,
                  ImageView<const std::int32_t>>;
-/// Writes an image. Requires that `format` has such pixels.
+/// Requires that `format` has such pixels.
 void write_image(io::AtomicFile& file, Format format, const ImageOfFile& image, int threads = 1);
 
-/// `--hash`: prints a picture's digest to standard output, a line of the digest, what it is of, and
-/// the picture's number where there are many.
+/// `--hash`: prints a line with the digest, what it is of, and the picture's number if there are
+/// many.
 void print_hash(const Digest& digest, std::string_view what, std::optional<std::size_t> number);
 
 }  // namespace rastrum::cli

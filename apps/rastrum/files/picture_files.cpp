@@ -31,8 +31,8 @@ ImageView<const Pixel> top(const Image<Pixel>& image, int rows) {
   return {image.view().data, image.width(), rows};
 }
 
-/// Calls take(output, what it is of, the first rows of its image) for the colours, depth, ids,
-/// objects and --image that are asked for; with --hash alone for the colours, too.
+/// Calls take(output, name, the first rows of its image) for the wanted colours, depth, ids,
+/// objects and --image; with --hash alone for the colours, too.
 template <class Take>
 void for_each_image(const RenderJob& job, const PictureOutputs& o, const Pictures& p, int rows,
                     const Take& take) {
@@ -51,8 +51,7 @@ void for_each_image(const RenderJob& job, const PictureOutputs& o, const Picture
         p.images[i]);
 }
 
-/// Writes the files of one picture; the caller commits them. `number`: the picture's, where there
-/// are many.
+/// The caller commits. `number`: the picture's, if there are many.
 void write_images(RenderJob& job, const PictureOutputs& o, const Pictures& p,
                   std::optional<std::size_t> number, OutputFiles& files) {
   const auto write = [&](const Output& output, auto&& writer) {
@@ -100,7 +99,7 @@ void write_images(RenderJob& job, const PictureOutputs& o, const Pictures& p,
   });
 }
 
-/// The files of one picture that comes in bands of rows, so that it is nowhere held as a whole.
+/// The files of one picture that comes in bands of rows, and is never held as a whole.
 class BandFiles {
  public:
   BandFiles(const RenderJob& job, OutputFiles& files) : job_(job) {

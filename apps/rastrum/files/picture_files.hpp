@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From the pictures of `rastrum render` to its files.
 #pragma once
 
 #include "frame/frames.hpp"
@@ -7,8 +6,8 @@
 
 namespace rastrum::cli {
 
-/// Draws all pictures of the job and writes its files. A sequence's picture is seen as soon as it
-/// is drawn, all other files together at the end.
+/// Draws all pictures of the job and writes its files. A sequence's picture is visible as soon as
+/// it is drawn, all other files together at the end.
 void write_pictures(RenderJob& job, Frames& frames);
 
 }  // namespace rastrum::cli

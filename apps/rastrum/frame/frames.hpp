@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pictures of a job, drawn: in memory, chunk by chunk out of a file, or with other ranks.
+// Draws the pictures of a job: in memory, chunk by chunk out of a file, or with other ranks.
 #pragma once
 
 #include <cstddef>
@@ -19,25 +19,25 @@ struct SceneJob;
 
 class Frames {
  public:
-  /// It is told once all pictures are drawn.
+  /// Available once all pictures are drawn.
   struct Account {
-    nlohmann::ordered_json stats;  ///< empty unless they are asked for
+    nlohmann::ordered_json stats;  ///< empty unless asked for
     std::string summary;
   };
   using TakeRows = std::function<void(int rows)>;
 
   Frames(std::size_t pictures, int rows_at_once) : count(pictures), rows(rows_at_once) {}
   virtual ~Frames() = default;
-  /// Draws picture `number` with its words and effects into `pictures`, which are kept from one to
-  /// the next. Where `rows` says how many, they are the picture's next whenever it calls `take`.
+  /// Draws picture `number` with its words and effects into `pictures`, which is reused. If `rows`
+  /// is not 0, `pictures` has the next rows at each call of `take`.
   virtual void draw(std::size_t number, Pictures& pictures, const TakeRows& take) = 0;
   [[nodiscard]] virtual Account account() = 0;
 
   const std::size_t count;  ///< of pictures
-  const int rows;           ///< that are drawn at once, so that nobody holds a picture; 0: all
+  const int rows;           ///< drawn at once, so that no whole picture is held; 0: all
 };
 
-/// They draw for `job`, which must outlive them.
+/// `job` must outlive them.
 [[nodiscard]] std::unique_ptr<Frames> frames_of(SceneJob& job);
 [[nodiscard]] std::unique_ptr<Frames> frames_of(LargeJob& job);
 [[nodiscard]] std::unique_ptr<Frames> frames_of(PartJob& job);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The ramp is a line of even lightness steps in Oklab (B. Ottosson, "A perceptual color space for
-// image processing", 2020): lightness alone orders the values, so it also reads in grey.
+// The ramp has even lightness steps in Oklab (B. Ottosson, "A perceptual color space for image
+// processing", 2020), so it also reads in grey.
 #include "heatmap.hpp"
 
 #include <algorithm>

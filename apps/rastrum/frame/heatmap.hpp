@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures of how a picture was drawn: how many fragments each pixel took, and where --show-errors
-// found a wrong order.
+// Pictures of how a picture was drawn: fragments per pixel, and wrong orders that --show-errors
+// found.
 #pragma once
 
 #include <array>
@@ -12,18 +12,18 @@ namespace rastrum::cli {
 
 struct Heatmap {
   Image<Rgba8> image;
-  std::uint32_t max = 0;  ///< fragments at the fullest pixel
+  std::uint32_t max = 0;  ///< at the fullest pixel
   std::uint64_t sum = 0;  ///< over all pixels: FrameStats::fragments
 };
 
-/// Black where there is no fragment; else the ramp at log(n) / log(max), so that one layer and two
-/// are told apart beside two hundred.
+/// Black without a fragment; else the ramp at log(n) / log(max), so that one layer and two differ
+/// visibly beside two hundred.
 [[nodiscard]] Heatmap make_heatmap(ImageView<const std::uint32_t> overdraw);
 
 inline constexpr int kRampSize = 1024;
 /// Dark violet through red to light yellow; equal steps look equally far apart.
 [[nodiscard]] const std::array<Rgba8, kRampSize>& heat_ramp();
-/// Where n > 0 fragments lie on the ramp.
+/// The place of n > 0 fragments on the ramp.
 [[nodiscard]] int ramp_index(std::uint32_t n, std::uint32_t max);
 
 struct ErrorPicture {
@@ -31,8 +31,7 @@ struct ErrorPicture {
   std::uint64_t wrong = 0;  ///< pixels
 };
 
-/// Red where `errors` is not 0, else the picture over black as a dim grey, so that one sees where
-/// the errors are.
+/// Red where `errors` is not 0, else the picture over black as a dim grey.
 [[nodiscard]] ErrorPicture make_error_picture(ImageView<const Rgba8> color8,
                                               ImageView<const std::uint8_t> errors);
 

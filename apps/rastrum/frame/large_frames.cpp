@@ -14,8 +14,8 @@ std::string mebibytes(std::uint64_t bytes) {
   return std::to_string(bytes >> 20).append(" MiB");
 }
 
-/// The number of rows of the picture that are drawn at once; 0: all. Throws where the picture must
-/// be whole and does not fit into the limit.
+/// Rows that are drawn at once; 0: all. Throws if the picture must be whole and does not fit into
+/// the limit.
 int rows_of(const LargeJob& job) {
   const std::uint64_t limit = job.options.memory_limit;
   const int rows = rows_at_once(job.arguments, limit / 4);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The statistics count what was culled, not why: so the triangles are looked at once more, one by
-// one, with the camera's planes. That takes no more than the frame did, and only where it was
-// empty.
+// The statistics count what was culled, not why. So the triangles are tested again one by one, with
+// the camera's planes. That takes no more than the frame did, and only happens if it was empty.
 #include "nothing_seen.hpp"
 
 #include <algorithm>
@@ -65,7 +64,7 @@ Vec3d twice_area(const Vec3 (&p)[3]) {
   return cross(Vec3d(p[1]) - Vec3d(p[0]), Vec3d(p[2]) - Vec3d(p[0]));
 }
 
-/// The least height of a triangle divided by its longest side: at most 0.87, if equilateral.
+/// The least height divided by the longest side: at most 0.87, if equilateral.
 double slenderness(const Vec3 (&p)[3]) {
   double longest = 0;
   for (int i = 0; i < 3; ++i)
@@ -79,7 +78,7 @@ struct Eye {
   double width, height;
   bool is_perspective;
   Cull cull;           ///< --cull in terms of the screen (cull_on_screen)
-  Cull material_cull;  ///< the same for a single-sided material
+  Cull material_cull;  ///< for a single-sided material
 
   [[nodiscard]] Fate fate(const Vec3 (&p)[3]) const {
     Vec4d c[3];
@@ -102,7 +101,7 @@ struct Eye {
     };
     if (cull != Cull::none ? leaves_out(cull) : leaves_out(material_cull))
       return cull != Cull::none ? culled : single_sided;
-    // Cut by the near plane, and what is left is not in the view.
+    // Cut by the near plane, and the rest is not in the view.
     if (!all([](const Vec4d& v) { return v.w > 0 && v.z <= v.w; })) return outside;
     return fate_on_screen(c, slenderness(p));
   }
@@ -119,9 +118,8 @@ struct Eye {
     const double wide = right - left, high = bottom - top;
     if (right < 0 || left > width || bottom < 0 || top > height) return outside;
     if (wide < 1 && high < 1) return small;
-    // Narrower than a hundredth of a pixel everywhere, so no size of the picture would show it. If
-    // it were narrower than a pixel even seen from its front, its shape is the reason, else the
-    // view is.
+    // Narrower than a hundredth of a pixel everywhere, so no picture size would show it. If it were
+    // narrower than a pixel even from its front, its shape is the reason, else the view.
     constexpr double kEdge = 0.01;
     const double twice_area =
         std::abs((x[1] - x[0]) * (y[2] - y[0]) - (x[2] - x[0]) * (y[1] - y[0]));
@@ -155,7 +153,7 @@ std::array<std::uint64_t, kFates> census(const FrameOptions& options, const Scen
                   !camera.orthographic,
                   cull_on_screen(instance, options.cull),
                   cull_on_screen(instance, material_cull(instance, scene.materials, shader))};
-    constexpr std::size_t kSome = 1 << 16;  // many, so that a large polygon is cut seldom
+    constexpr std::size_t kSome = 1 << 16;  // many, because a large polygon is cut again each time
     std::vector<std::uint32_t> vertices(3 * std::min(kSome, mesh.triangle_count()));
     for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
       if (t % kSome == 0)
@@ -169,7 +167,7 @@ std::array<std::uint64_t, kFates> census(const FrameOptions& options, const Scen
   return counts;
 }
 
-/// A place from which what is seen edge-on is not.
+/// A place from which an edge-on surface is visible.
 std::string look_from_elsewhere(const SceneView& scene) {
   const Bounds box = bounds(scene);
   const Vec3d centre = (box.min + box.max) * 0.5;
@@ -202,7 +200,7 @@ Emptiness why_empty(const FrameStats& frame, const FrameOptions& options, const 
   for (std::size_t f = 0; f < kFates; ++f)
     if (counts[f] != 0) order.push_back(static_cast<Fate>(f));
   std::ranges::stable_sort(order, std::ranges::greater{}, [&](Fate f) { return counts[f]; });
-  if (order.empty())  // the places of points, lines and exact surfaces are not looked at
+  if (order.empty())  // points, lines and exact surfaces are not tested
     return {"nothing of it lies in the view, or faces the camera", "--fit shows all"};
   const std::uint64_t input = frame.triangles.input;
   Emptiness why;

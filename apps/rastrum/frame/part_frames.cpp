@@ -16,18 +16,17 @@
 namespace rastrum::cli {
 namespace {
 
-/// Bytes of the picture that a rank may hold, where no memory limit is given.
+/// Picture bytes that a rank may hold without a memory limit.
 constexpr std::uint64_t kUsualBytes = std::uint64_t{1} << 30;
 
-/// The most memory that this process has had, as the system counts it.
+/// The process's peak memory as the system counts it.
 double peak_bytes() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) * 1024;
 }
 
-/// How many rows of the picture are drawn at once; 0: all, where that fits or where something is
-/// of the whole picture.
+/// Rows that are drawn at once; 0: all, if they fit or something needs the whole picture.
 int rows_of(const PartJob& job) {
   const std::uint64_t limit = job.render.memory_limit;
   const int rows = rows_at_once(job.arguments, limit == 0 ? kUsualBytes : limit / 4);
@@ -81,7 +80,7 @@ class PartFrames final : public Frames {
   }
 
  private:
-  /// All ranks' statistics; all call it.
+  /// All ranks must call it.
   [[nodiscard]] nlohmann::ordered_json statistics() {
     const RankNumbers own{job_.load_ms,
                           ms_,

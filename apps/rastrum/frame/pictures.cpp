@@ -10,23 +10,22 @@
 namespace rastrum::cli {
 namespace {
 
-/// Bytes that a rank holds of a pixel beside its targets: keys, words, other ranks' words, and
-/// words on their way.
+/// Bytes per pixel of a rank beside its targets: keys, words, other ranks' words, and words on
+/// their way.
 constexpr std::uint64_t kBytesOfWords = 48;
-/// Bytes of a sample, where there are several: a fragment as it is held, packed, and received.
+/// Bytes per sample if there are several: a fragment as held, packed, and received.
 constexpr std::uint64_t kBytesOfSample = 3 * 24;
 /// Bands are whole bins (RanksOptions::rows).
 constexpr int kStep = 64;
 
-/// Prepares the surface that annotations look at besides a frame's own targets.
 void add_surface(Renderer& renderer, const SceneView& scene, const Camera& camera,
                  const FrameOptions& frame, const Wanted& wanted) {
   if (wanted.notes != nullptr)
     wanted.annotator->add_surface(renderer, scene, camera, frame, *wanted.notes);
 }
 
-/// `frame_ms` and the stages are of the whole call, from the caller's mesh in memory to the
-/// finished image: what the façade does before the rasterizer's own clock is the stage "prepare".
+/// Times are of the whole call, from the mesh in memory to the finished image; the time before the
+/// rasterizer's own clock is the stage "prepare".
 FrameStats timed_render(Renderer& renderer, const SceneView& scene, const Camera& camera,
                         const FrameOptions& frame, const Targets& targets, Timeline& timeline,
                         const std::string& label) {
@@ -64,7 +63,7 @@ Wanted wanted_of(const RenderArguments& a, const Annotations* notes, Annotator* 
 
 int rows_at_once(const RenderArguments& a, std::uint64_t bytes) {
   const Wanted wanted = wanted_of(a);
-  // An image more for linear light and its depth, where colours have a tone.
+  // With a tone, one more image for linear light and its depth.
   std::uint64_t of_pixel = kBytesOfWords + sizeof(Vec4) + sizeof(float);
   of_pixel += wanted.color8 ? sizeof(Rgba8) : 0;
   of_pixel += wanted.color ? sizeof(Vec4) : 0;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures of meshes: which images are filled when, and what is timed.
 #pragma once
 
 #include <vector>
@@ -18,18 +17,17 @@ class Timeline;
 struct Wanted {
   bool color8 = false, color = false, depth = false, ids = false, overdraw = false, errors = false;
   std::vector<std::string_view> images{};
-  const Annotations* notes = nullptr;  ///< what is drawn over it, by `annotator`, looks at more
+  const Annotations* notes = nullptr;  ///< drawn over it by `annotator`; may need more images
   Annotator* annotator = nullptr;      ///< with `notes`
 };
 
 [[nodiscard]] Wanted wanted_of(const RenderArguments& a, const Annotations* notes = nullptr,
                                Annotator* annotator = nullptr);
 
-/// How many rows of the picture are drawn and written at once, so that what is held of it stays
-/// within `bytes`; 0: all. Images that look at a whole picture are not asked about here.
+/// Rows that are drawn and written at once to hold at most `bytes` of the picture; 0: all. Ignores
+/// images that need a whole picture.
 [[nodiscard]] int rows_at_once(const RenderArguments& a, std::uint64_t bytes);
-/// The options that need a whole picture, as the begin of "… a whole picture"; null: none, so that
-/// it can be drawn in bands.
+/// The options that need a whole picture, as the begin of "… a whole picture"; null: none.
 [[nodiscard]] const char* why_whole(const RenderArguments& a, const Annotations& notes);
 
 struct Pictures {
@@ -39,8 +37,8 @@ struct Pictures {
   Image<std::int64_t> ids;
   Image<std::uint32_t> overdraw;
   Image<std::uint8_t> errors;
-  std::vector<FrameImagePixels> images;  ///< as Wanted's
-  Targets targets;                       ///< all of these, and what Wanted::annotator added
+  std::vector<FrameImagePixels> images;  ///< as in Wanted
+  Targets targets;                       ///< all of these, and those of Wanted::annotator
   Camera camera;                         ///< from where
 };
 
@@ -50,10 +48,9 @@ struct Pictures {
 void annotate(const Pictures& pictures, const Annotations& notes, const SceneView& scene,
               const FrameOptions& frame, Annotator& annotator);
 
-/// Renders into `pictures` and returns the statistics of each timed frame.
-/// `timed`: `frames` frames fill the 8-bit image alone, whatever the outputs are, so that times
-/// can be compared; then one more pass, untimed, fills the other images if any is wanted.
-/// Otherwise one pass fills everything that is wanted.
+/// Renders into `pictures` and returns the statistics of each timed frame. `timed`: `frames` frames
+/// fill only the 8-bit image, whatever the outputs are, so that times can be compared; one more,
+/// untimed pass fills the other wanted images. Otherwise one pass fills everything.
 [[nodiscard]] std::vector<FrameStats> render_frames(Renderer& renderer, const SceneView& scene,
                                                     const Camera& camera, const FrameOptions& frame,
                                                     Wanted wanted, bool timed, int frames,

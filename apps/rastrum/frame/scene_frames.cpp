@@ -76,8 +76,8 @@ class SceneFrames final : public Frames {
   Annotator annotator_;
   std::vector<FrameStats> frames_;
   std::vector<Camera> cameras_;
-  std::size_t empty_ = 0, first_empty_ = 0;  ///< pictures in which nothing is seen
-  Emptiness why_;                            ///< the first of them is so
+  std::size_t empty_ = 0, first_empty_ = 0;  ///< pictures without anything visible
+  Emptiness why_;                            ///< of the first of them
 };
 
 }  // namespace

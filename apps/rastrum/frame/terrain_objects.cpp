@@ -33,7 +33,7 @@ TerrainObject parse_object(const char* option, const std::string& text, bool is_
   const std::string size = is_sprite ? "size" : "scale";
   const std::pair<std::string_view, std::optional<double>*> fields[] = {
       {"x", &x}, {"y", &y}, {"height", &standing.height}, {size, &scale}, {"turn", &turn_deg}};
-  std::string look;  // what the input takes itself (input_spec.hpp)
+  std::string look;  // the part that the input takes (input_spec.hpp)
   for (const std::string& item : parts_of(text.substr(at + 1), ",")) {
     const std::size_t equals = std::min(item.find('='), item.size());
     const std::string name = item.substr(0, equals);
@@ -99,7 +99,6 @@ double ground_under(const TerrainObject& object, const terrain::Terrain& terrain
 
 void add_terrain_objects(Parser app, TerrainObjectArguments& a) {
   app = app.under("Meshes and sprites");
-  // Each use of the option is an object.
   const auto add_object = [&](const char* name, const char* type, const char* help,
                               bool is_sprite) {
     app.add_repeated(name, type, help, [&a, name, is_sprite](const std::string& text) {
@@ -139,7 +138,7 @@ void check_terrain_objects(const TerrainObjectArguments& a,
 TerrainObjects::TerrainObjects(const TerrainObjectArguments& a, const TerrainLook& options,
                                Timeline& timeline, Progress& progress)
     : options_(options) {
-  bool has_materials = false;  // of files: what is painted by hand keeps the plain shader
+  bool has_materials = false;  // of files; a given colour keeps the plain shader
   for (const TerrainObject& object : a.objects) {
     const std::size_t first = scene_.instances.size();
     progress.show("loading " + object.input);
@@ -159,11 +158,11 @@ TerrainObjects::TerrainObjects(const TerrainObjectArguments& a, const TerrainLoo
   family::Options render = a.scene.render;
   render.width = options.width;
   render.height = options.height;
-  // Their pictures' depth lies with the host, whatever drew the terrain.
+  // The depth lies on the host, whatever drew the terrain.
   render.device = options.device == Device::serial ? Device::serial : Device::threads;
   render.threads = options.threads;
   render.isa = options.isa;
-  // Light that is mapped is the material shader's.
+  // Only the material shader maps light.
   if (render.shader == Shader::automatic && render.tone != ToneMapping{})
     render.shader = Shader::material;
   render.shader = shader_of(render.shader, has_materials);

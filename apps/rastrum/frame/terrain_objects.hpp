@@ -20,10 +20,10 @@ namespace rastrum::cli {
 class Progress;
 class Timeline;
 
-/// Where an object stands. Cells, and degrees as --angle has them.
+/// In cells; degrees as for --angle.
 struct Standing {
   double x = 0, y = 0;
-  std::optional<double> height;  ///< of its lowest point; none: the ground's
+  std::optional<double> height;  ///< of its lowest point; none: on the ground
   double scale = 1, turn_deg = 0;
 };
 
@@ -31,7 +31,7 @@ struct TerrainObject {
   std::string text;   ///< as given, for messages
   std::string input;  ///< a file, or builtin:SHAPE
   bool is_sprite = false;
-  std::optional<Standing> standing;  ///< none: a mesh whose coordinates are the terrain's
+  std::optional<Standing> standing;  ///< none: the mesh has the terrain's coordinates
 };
 
 struct TerrainObjectArguments {
@@ -39,22 +39,22 @@ struct TerrainObjectArguments {
   SceneArguments scene;                ///< how they are drawn
 };
 
-/// Adds --mesh, --sprite and the options of how they are drawn; parsing fills `a`.
+/// Parsing fills `a`.
 void add_terrain_objects(Parser app, TerrainObjectArguments& a);
-/// Checks what the parser cannot see by itself. Throws UsageError.
+/// Checks what the parser cannot check. Throws UsageError.
 void check_terrain_objects(const TerrainObjectArguments& a, const terrain::TerrainOptions& options);
 
-/// Objects read from their files, then put on the ground, then drawn into pictures of the terrain.
+/// Objects that are read from files, put on the ground, and drawn into pictures of the terrain.
 class TerrainObjects {
  public:
   /// Requires an object. Throws Error naming the file.
   TerrainObjects(const TerrainObjectArguments& a, const TerrainLook& options, Timeline& timeline,
                  Progress& progress);
 
-  /// Throws UsageError for what has no ground: beyond the map, or in a hole of it.
+  /// Throws UsageError for an object beyond the map or in a hole of it.
   void place(const terrain::Terrain& terrain);
 
-  /// Draws them over `picture`, whose depth they need; adds to its statistics.
+  /// Draws them over `picture`, which needs depth; adds to its statistics.
   void draw(const terrain::TerrainTargets& picture, terrain::TerrainStats& stats);
 
   [[nodiscard]] const std::vector<std::string>& warnings() const { return scene_.warnings; }

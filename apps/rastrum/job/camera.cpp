@@ -20,13 +20,12 @@ Camera file_camera(const Scene& scene, int index) {
   return scene.cameras[static_cast<std::size_t>(index)];
 }
 
-/// The camera that sees everything, along −z where there is no view. A turning scene turns about
-/// --up.
+/// The camera that sees everything, along −z without a view. A turning scene turns about --up.
 Camera fitted_camera(const ViewOptions& o, const SceneView& scene, float fov_rad, Size picture,
                      FitRanks* ranks) {
   const View v = o.has_view() ? view_of(o) : View{};
   Vec3d up = o.up.value_or(Vec3d{0, 1, 0});
-  const double aside = length(cross(up, v.direction));  // 0 without a view is told by choose_camera
+  const double aside = length(cross(up, v.direction));  // choose_camera reports 0 without a view
   if (o.fit == Fit::sphere || (!o.has_view() && (o.eye || o.target || aside == 0)))
     return fit_camera(scene, fov_rad, o.orthographic, v.direction, v.up, ranks);
   if (o.has_view() && !(o.turns && o.roll_deg.value_or(0) == 0 && aside > 1e-6)) up = v.up;

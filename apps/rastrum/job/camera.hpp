@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From the options of the camera to a camera.
 #pragma once
 
 #include <rastrum/fit.hpp>
@@ -9,10 +8,9 @@
 
 namespace rastrum::cli {
 
-/// The near plane of a camera of one's own is as far from the box as the fit camera's would be.
-/// `picture`: its size, which the tight fit fills. Throws UsageError where the file has no such
-/// camera or the parts do not fit each other. `ranks`: who has the rest of the scene; what turns is
-/// not theirs.
+/// With a given eye or target the near plane is as far from the box as the fit camera's would be.
+/// `picture`: its size, which the tight fit fills. Throws UsageError if the file has no such camera
+/// or the parts do not fit each other. `ranks` have the rest of a scene that does not turn.
 [[nodiscard]] Camera choose_camera(const ViewOptions& options, const Scene& scene,
                                    const SceneView& view, Size picture, FitRanks* ranks = nullptr);
 

@@ -141,7 +141,7 @@ void write_path(const std::filesystem::path& file, std::span<const PathKey> keys
 
 std::vector<double> frame_times(double first_s, double last_s, double fps) {
   constexpr double kMost = 1e6;
-  // Rounding must not lose the last picture of a path whose length is a multiple of a frame.
+  // Rounding must not lose the last picture of a path of whole frames.
   const double count = std::floor((last_s - first_s) * fps * (1 + 1e-12)) + 1;
   if (!(count <= kMost))
     throw Error(Errc::invalid_argument, "the path has " + std::to_string(count) +

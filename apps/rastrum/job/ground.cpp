@@ -18,8 +18,8 @@
 namespace rastrum::cli {
 namespace {
 
-/// The part of a map's shorter side that its relief is made to take where the file has no scale:
-/// what is natural lies between a fifth (a volcano at 30 m a cell) and a fiftieth.
+/// The relief of a map without a scale, as a part of its shorter side. Natural reliefs are a fifth
+/// (a volcano at 30 m per cell) to a fiftieth of it.
 constexpr double kReliefOfSide = 1.0 / 12;
 
 std::string digits(double value, int n) {
@@ -32,7 +32,7 @@ struct Relief {
   double low = std::numeric_limits<double>::infinity(), high = -low;
 };
 
-/// The range of what is a number.
+/// Ignores heights that are not finite.
 Relief relief_of(const Image<float>& heights) {
   Relief r;
   for (const float h : heights.pixels()) {
@@ -97,7 +97,7 @@ LoadedTerrain::LoadedTerrain(const TerrainInput& input) {
     }
   }
   for (float& h : grid.heights.pixels()) {
-    // Division by 257 makes whole numbers of 8-bit heights in 16 bits; multiplication need not.
+    // Division by 257 makes whole numbers of 8-bit heights in 16 bits; multiplication might not.
     h = scale ? h * static_cast<float>(*scale)
               : static_cast<float>(static_cast<double>(h) / grid.units_per_cell);
     if (!std::isfinite(h)) h = std::numeric_limits<float>::quiet_NaN();
@@ -124,7 +124,7 @@ void LoadedTerrain::show_numbers(const ScalarMapping& mapping, const TerrainLook
   }
   numbers_.emplace(mapping, in_use);
   if (!is_map()) return;
-  // Steps stay steps between cells.
+  // Filtered heights get finer colours, so that steps stay sharp between cells.
   const int finer = o.filter == terrain::MapFilter::bilinear ? 0 : 1;
   map_.colors = terrain::colors_of_heights(map_.heights.view(), *numbers_, cells_a_unit_, finer,
                                            o.tiling, o.threads);

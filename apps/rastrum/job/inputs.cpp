@@ -41,7 +41,7 @@ Vec4 linear(Vec4 display) {
   return {channel(display.x), channel(display.y), channel(display.z), 1};
 }
 
-/// A colour takes the place of the base colours, their textures and the vertex colours.
+/// Replaces base colours, their textures and vertex colours.
 void paint(Scene& scene, const Look& look) {
   if (look.color) {
     for (Mesh& mesh : scene.meshes) mesh.colors = {};
@@ -66,17 +66,15 @@ struct Loaded {
   bool has_materials = false;  ///< of the file
 };
 
-/// A file or a pipe.
 Scene read(const std::string& source, const InputReading& reading) {
   const auto& [format, options] = reading;
   if (!is_unnamed(source, format)) return io::read_scene(source, options);
-  check_inputs({source}, format);  // before it is opened, which would wait for who writes to it
+  check_inputs({source}, format);  // opening a pipe would wait for its writer
   const io::MappedFile file(is_stdin(source) ? "/dev/stdin" : source);
   return io::decode_scene(file.bytes(), format, is_stdin(source) ? "standard input" : source,
                           options);
 }
 
-/// Where it stands and how it looks.
 void place_and_paint(Scene& scene, const InputSpec& spec) {
   if (spec.placement != Placement{}) scene.place(spec.placement.matrix());
   if (spec.look.given()) paint(scene, spec.look);
@@ -93,7 +91,7 @@ Loaded load(const std::string& input, const InputReading& reading) {
   return loaded;
 }
 
-/// Unindexed corners share nothing, so their vertex normals are the face normals that the renderer
+/// Unindexed corners share nothing: their vertex normals are the face normals that the renderer
 /// takes anyway.
 void choose_normals(Mesh& mesh, const NormalOptions& options) {
   if (options.kind == Normals::file && !mesh.normals.empty()) return;
@@ -172,7 +170,7 @@ Image<std::int32_t> inputs_of_ids(ImageView<const std::int64_t> ids,
         continue;
       }
       const auto id = static_cast<std::uint64_t>(ids(x, y));
-      // The last part that begins at or before it: empty ones begin where the next does.
+      // The last part that begins at or before it: an empty part begins with the next.
       const auto after = std::upper_bound(
           parts.begin(), parts.end(), id,
           [](std::uint64_t value, const InputPart& part) { return value < part.first_id; });

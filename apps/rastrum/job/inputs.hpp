@@ -19,46 +19,46 @@ namespace rastrum::cli {
 class Progress;
 class Timeline;
 
-/// An input's part of the scene. Points and segments of lines have ids as triangles do.
+/// Points and segments of lines have ids like triangles.
 struct InputPart {
-  std::string name;  ///< as it was given
+  std::string name;  ///< as given
   std::uint64_t first_id = 0, triangles = 0;
 };
 
 struct Inputs {
   Scene scene;
   std::vector<InputPart> parts;  ///< in command order; their ids follow each other
-  bool has_materials = false;    ///< of files: a colour given by hand is none
+  bool has_materials = false;    ///< of files, not by a given colour
 };
 
-/// Replaces `auto` by `material` for the materials of a file, else by `phong`. The library's own
-/// choice would take a colour given by hand for a material.
+/// Replaces `auto` by `material` for materials of a file, else by `phong`. The library would take a
+/// given colour for a material.
 [[nodiscard]] inline Shader shader_of(Shader asked, bool has_materials) {
   if (asked != Shader::automatic) return asked;
   return has_materials ? Shader::material : Shader::phong;
 }
 
 /// The scene of an INPUT (input_spec.hpp), placed and painted; `-` is standard input. Throws
-/// UsageError for a builtin that does not exist, Error for a file that cannot be read.
+/// UsageError for an unknown builtin, Error for a file that cannot be read.
 [[nodiscard]] Scene load_input(const std::string& input, const InputReading& reading = {});
 
-/// Places and paints the scene that was read for one INPUT, and makes normals, as load_inputs does.
+/// Places and paints the scene of one INPUT, and makes its normals.
 void finish_input(Scene& scene, const std::string& input, const NormalOptions& normals);
 
-/// All inputs, appended in order, with their normals. Each is an event of `timeline`.
+/// Appends all inputs in order, with their normals. Each is an event of `timeline`.
 [[nodiscard]] Inputs load_inputs(const std::vector<std::string>& inputs,
                                  const NormalOptions& normals, Timeline& timeline,
                                  Progress& progress, const InputReading& reading = {});
 
 void set_sizes(Scene& scene, const PixelSizes& sizes);
 
-/// How many animations the input with the most has.
+/// The most that one input has.
 [[nodiscard]] std::size_t animation_count(const Scene& scene);
-/// rastrum::pose; normals that the files do not have are made again. There is such an animation.
+/// rastrum::pose; makes missing normals again. Requires that the animation exists.
 void pose_inputs(Inputs& inputs, const NormalOptions& normals, double seconds,
                  std::size_t animation);
 
-/// The number of the input that each pixel shows, −1 where `ids` is: a search among the parts.
+/// The input's number at each pixel, −1 where `ids` is −1.
 [[nodiscard]] Image<std::int32_t> inputs_of_ids(ImageView<const std::int64_t> ids,
                                                 std::span<const InputPart> parts);
 

@@ -94,7 +94,7 @@ void JsonFields::fail(std::string_view name, const std::string& problem) const {
 }
 
 void write_json(io::AtomicFile& file, const nlohmann::ordered_json& value) {
-  // A file name need not be UTF-8, JSON must.
+  // A file name need not be UTF-8, but JSON must.
   const std::string text =
       value.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
   file.write(text.data(), text.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// JSON files. Reading those that people write: each error names the file and the place in it, and a
-// name that nobody asked for is an error, not silence. Writing them whole or not at all.
+// Reads JSON files that people write: errors name the file and the place, and unknown names are
+// errors. Writes files whole or not at all.
 #pragma once
 
 #include <cstddef>
@@ -19,8 +19,8 @@ namespace rastrum::cli {
 /// Throws Error{not_found, io, bad_format} naming the file.
 [[nodiscard]] nlohmann::ordered_json read_json(const std::filesystem::path& file);
 
-/// The members of one object. Members are read by name; each throws Error{bad_format} naming the
-/// place where the type is not what is wanted.
+/// The members of one object, read by name. Each throws Error{bad_format} naming the place for a
+/// wrong type.
 class JsonFields {
  public:
   /// `place`: the file and the way to `object`, for messages. `object` must outlive this.
@@ -33,14 +33,14 @@ class JsonFields {
   [[nodiscard]] std::optional<bool> boolean(const char* name);
   /// The member itself, or null.
   [[nodiscard]] const nlohmann::ordered_json* value(const char* name);
-  /// The elements of an array, each with its place; empty where the member is absent.
+  /// The elements of an array, each with its place; none if the member is absent.
   struct Element {
     const nlohmann::ordered_json* value;
     std::string place;
   };
   [[nodiscard]] std::vector<Element> array(const char* name);
 
-  /// Throws Error{bad_format} for a member that was not asked for; lists those that were.
+  /// Throws Error{bad_format} for a member that was not read; lists those that were.
   void finish() const;
   [[noreturn]] void fail(const std::string& problem) const;
   [[noreturn]] void fail(std::string_view name, const std::string& problem) const;

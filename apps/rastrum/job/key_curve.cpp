@@ -44,7 +44,7 @@ double KeyCurve::at(double time) const {
   const double u = (time - times_[i]) / length;
   const double a = values_[i], b = values_[i + 1];
   if (velocities_.empty()) return a + (b - a) * u;
-  // The straight line and what the velocities bend it by; 0 at both keys.
+  // The straight line, bent by the velocities; the bend is 0 at both keys.
   const double slope = (b - a) / length;
   const double bend = (velocities_[i] - slope) * (1 - u) - (velocities_[i + 1] - slope) * u;
   return a + (b - a) * u + bend * u * (1 - u) * length;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers that change with time, given at keys: what camera paths interpolate.
+// Numbers that change with time, given at keys.
 #pragma once
 
 #include <cassert>
@@ -16,32 +16,30 @@ enum class Interpolation {
   linear,
 };
 
-/// How the velocity at a key is chosen in the smooth form.
+/// The velocity at a key of a smooth curve.
 enum class Tangent {
-  /// The slope of the parabola through the key and its neighbours (Catmull-Rom where times are
-  /// even): rounds a path off, may go beyond the keys' range.
+  /// The slope of the parabola through the key and its neighbours (Catmull-Rom at even times):
+  /// round, but may leave the keys' range.
   curve,
   /// Fritsch and Butland's harmonic mean (SIAM J. Sci. Stat. Comput. 5, 1984): never leaves the
-  /// range of the two keys, for what has bounds, such as a field of view.
+  /// range of the two keys, for bounded values such as a field of view.
   monotone,
 };
 
-/// One number at increasing times. Outside them it stays what it is at the first and the last.
-/// O(log keys) a value.
+/// Constant before the first time and after the last. O(log keys) per value.
 class KeyCurve {
  public:
   /// Requires times increasing, as many values as times, at least one.
   KeyCurve(std::span<const double> times, std::vector<double> values, Interpolation interpolation,
            Tangent tangent);
-  /// At a key's time exactly the key's value.
+  /// Exact at keys.
   [[nodiscard]] double at(double time) const;
 
  private:
   std::vector<double> times_, values_;
-  std::vector<double> velocities_;  ///< a key; empty: linear
+  std::vector<double> velocities_;  ///< per key; empty: linear
 };
 
-/// A number of a camera that moves along a path.
 template <class Camera>
 struct PathColumn {
   double (*get)(const Camera&);
@@ -49,8 +47,8 @@ struct PathColumn {
   Tangent tangent;
 };
 
-/// A camera that moves through keys; each has a `time_s` and a `camera`. The first key
-/// gives all that the columns leave out and all that is not finite.
+/// A camera that moves through keys, which have `time_s` and `camera`. The first key gives what the
+/// columns leave out, and what is not finite.
 template <class Key>
 class KeyedPath {
  public:
@@ -76,7 +74,7 @@ class KeyedPath {
   [[nodiscard]] const Key& first() const { return keys_.front(); }
   [[nodiscard]] double first_s() const { return first().time_s; }
   [[nodiscard]] double last_s() const { return keys_.back().time_s; }
-  /// At a key's time exactly its camera; before the first and after the last those.
+  /// Exact at keys; the first camera before them, the last one after.
   [[nodiscard]] Camera at(double time_s) const {
     Camera camera = first().camera;
     for (std::size_t i = 0; i < curves_.size(); ++i)

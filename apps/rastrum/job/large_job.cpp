@@ -13,9 +13,9 @@
 namespace rastrum::cli {
 namespace {
 
-/// Where nobody says how much.
+/// If none is given.
 constexpr std::uint64_t kUsualLimit = std::uint64_t{2} << 30;
-/// Smaller limits are of those who draw in little scratch.
+/// A smaller limit is meant for scratch; the file is read then.
 constexpr std::uint64_t kLeastLimit = std::uint64_t{64} << 20;
 
 void check_options(const RenderArguments& a) {
@@ -78,7 +78,7 @@ std::optional<OutOfCoreFile> large_input(const RenderArguments& a) {
   } catch (const Error& e) {
     if (std::string_view(e.what()).find("out of core: ") == std::string_view::npos) throw;
     // A small file with much beside its triangles (LargeFile::bytes_beside) may take more memory
-    // out of core than if it is read whole.
+    // out of core than read whole.
     const bool is_small = e.code() == Errc::out_of_memory && bytes <= limit;
     if (e.code() != Errc::unsupported && !is_small) throw;
     if (!a.quiet) warn(std::string(e.what()).append("; it is read, beyond the memory limit"));

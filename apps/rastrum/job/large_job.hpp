@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A job of a file that is larger than memory: it is mapped, and drawn in chunks.
+// A job for a file larger than memory: it is mapped, and drawn in chunks.
 #pragma once
 
 #include <optional>
@@ -10,10 +10,9 @@
 
 namespace rastrum::cli {
 
-/// The input, where it is to be drawn so: RenderArguments::out_of_core says `always`, or
-/// `automatic` and the one INPUT takes more than the memory limit. A file of a kind that is not
-/// drawn so is read then, with a warning. Throws what is wrong with the file, and refuses options
-/// that need all of the mesh by name.
+/// The input if it is to be drawn out of core: RenderArguments::out_of_core says `always`, or
+/// `automatic` and the one INPUT takes more than the memory limit. A file of another kind is read,
+/// with a warning. Throws for a wrong file, and refuses options that need the whole mesh, by name.
 [[nodiscard]] std::optional<OutOfCoreFile> large_input(const RenderArguments& a);
 
 struct LargeJob : RenderJob {

@@ -15,10 +15,10 @@
 namespace rastrum::cli {
 namespace {
 
-/// The size that a shape counts as among files, where inputs are dealt by their bytes.
+/// The size of a shape among files when inputs are dealt by their bytes.
 constexpr std::uint64_t kBuiltinBytes = 1 << 20;
 
-/// The options that are of a whole scene, or of one renderer.
+/// Options that need a whole scene or one renderer.
 void check_for_ranks(const RenderArguments& a) {
   const auto refuse = [](bool given, const char* option, const char* why) {
     if (given)
@@ -46,8 +46,8 @@ std::uint64_t bytes_of(const std::string& input) {
   return ignored ? kBuiltinBytes : bytes;
 }
 
-/// Where each rank's inputs begin, and behind the last: runs of about equally many bytes, so that
-/// the order of ranks is that of the command line. As the root's directory has them.
+/// The begin of each rank's inputs, and the end: runs of about equally many bytes, so that ranks
+/// keep the command line's order. Sizes are those that the root sees.
 std::vector<std::uint64_t> deal(Communicator& ranks, const std::vector<std::string>& inputs) {
   const auto n = static_cast<std::size_t>(ranks.size());
   std::vector<std::uint64_t> firsts;
@@ -70,7 +70,6 @@ std::vector<std::uint64_t> deal(Communicator& ranks, const std::vector<std::stri
   return firsts;
 }
 
-/// One number of each rank.
 std::vector<std::uint64_t> gather(Communicator& ranks, std::uint64_t number) {
   std::vector<std::uint64_t> all;
   for (const auto& bytes : gather_to_all(ranks, std::as_bytes(std::span(&number, 1))))
@@ -127,8 +126,8 @@ void PartJob::load() {
   agree_on_scene(firsts);
 }
 
-/// Makes the ranks' scenes agree as one scene of all inputs would: Scene::append adds plain
-/// materials, and `auto` looks at materials of all inputs.
+/// Makes the ranks' scenes agree like one scene of all inputs: Scene::append adds plain materials,
+/// and `auto` depends on all materials.
 void PartJob::agree_on_scene(const std::vector<std::uint64_t>& firsts) {
   const bool any_materials = ranks.max(inputs.scene.materials.empty() ? 0 : 1) != 0;
   inputs.has_materials = ranks.max(inputs.has_materials ? 1 : 0) != 0;
@@ -158,7 +157,7 @@ void PartJob::agree_on_scene(const std::vector<std::uint64_t>& firsts) {
   });
 }
 
-/// Does what set_scalars() does with one scene.
+/// As set_scalars() for one scene.
 void PartJob::show_numbers() {
   const ScalarOptions& s = arguments.annotations.scalars;
   if (s.name.empty()) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A job of one of several ranks: each reads its own inputs, the first writes the files that one
-// process with all inputs would have written.
+// The job of one of several ranks. Each reads its own inputs; the first writes the files that one
+// process would have written.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@
 namespace rastrum::cli {
 
 struct PartJob : RenderJob {
-  /// If one rank fails, all do. Options that are not for ranks are refused by name.
+  /// If one rank fails, all do. Refuses by name options that ranks lack.
   PartJob(const RenderArguments& a, RanksOfProgram& program);
 
   void in_writer(std::string_view phase, const std::function<void()>& f) override;
@@ -22,7 +22,7 @@ struct PartJob : RenderJob {
   std::optional<Renderer> renderer;
   Inputs inputs;  ///< of this rank
   std::optional<SceneBinding> binding;
-  std::vector<std::uint64_t> instance_ids;  ///< of its instances, among those of all ranks
+  std::vector<std::uint64_t> instance_ids;  ///< of its instances, among all ranks'
   std::vector<std::size_t> rank_of_input;   ///< for each of `parts`
 
  private:

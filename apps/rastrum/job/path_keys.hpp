@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shared by the files of all camera paths (docs/window.md): keys in time, each of which takes what
-// it leaves out from the one before.
+// Keys in time of all camera paths (docs/window.md). A key takes what it leaves out from the one
+// before.
 #pragma once
 
 #include <filesystem>
@@ -17,13 +17,13 @@
 
 namespace rastrum::cli {
 
-/// The member "interpolation" of a path; smooth where it is absent.
+/// Smooth if absent.
 [[nodiscard]] Interpolation read_interpolation(JsonFields& fields);
 
-/// The member "time" of a key; 0 where the first key leaves it out. `before_s`: of the key before.
+/// 0 if the first key leaves it out. `before_s`: the key before.
 [[nodiscard]] double read_key_time(JsonFields& fields, std::optional<double> before_s);
 
-/// Returns f(); adds the file's name to an Error that it throws.
+/// Returns f(); adds the file's name to its Error.
 template <class F>
 auto of_path(const std::filesystem::path& file, const F& f) {
   try {
@@ -33,8 +33,8 @@ auto of_path(const std::filesystem::path& file, const F& f) {
   }
 }
 
-/// `base`: what the first key leaves out. `read_key(element, before, first)` returns a Key.
-/// Throws Error{not_found, io, bad_format} naming the file and the key.
+/// `base`: for values that the first key leaves out. `read_key(element, before, first)` returns a
+/// Key. Throws Error{not_found, io, bad_format} naming the file and the key.
 template <class Key, class ReadKey>
 [[nodiscard]] std::pair<std::vector<Key>, Interpolation> read_path_keys(
     const std::filesystem::path& file, const Key& base, const ReadKey& read_key) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A run while it works: its line of progress, its warnings, and when it did what.
+// The progress line, warnings and times of a run.
 #pragma once
 
 #include <chrono>
@@ -15,7 +15,7 @@
 
 namespace rastrum::cli {
 
-/// Signs of life during long work: one line on stderr that rewrites itself, on a terminal alone.
+/// One line on stderr that rewrites itself, on a terminal alone.
 class Progress {
  public:
   explicit Progress(bool quiet);
@@ -23,11 +23,11 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// Shows `what`, at most ten times a second and not in the first half second.
+  /// At most ten times a second, and not in the first half second.
   void show(const std::string& what);
-  /// The same with the share that is done, in percent.
+  /// With the finished share in percent.
   void show(std::string_view what, std::uint64_t done, std::uint64_t all);
-  /// Removes the line, so that other text can be written.
+  /// So that other text can be written.
   void clear();
 
  private:
@@ -38,10 +38,10 @@ class Progress {
 };
 
 void warn(const std::string& what);
-/// Says a choice that was made, which is no fault.
+/// Reports a choice that was made, which is no fault.
 void note(const std::string& what);
 
-/// Times in ms since the program began its work.
+/// In ms since the start of the work.
 class Timeline {
  public:
   struct Event {
@@ -54,14 +54,13 @@ class Timeline {
     return std::chrono::duration<double, std::milli>(Clock::now() - start_).count();
   }
   void add(Event event) { events_.push_back(std::move(event)); }
-  /// Runs f and records it.
   template <class F>
   void measure(std::string name, const char* category, F&& f) {
     const double begin = now_ms();
     f();
     add({std::move(name), category, begin, now_ms()});
   }
-  /// A frame and, inside it, its stages.
+  /// Adds a frame and its stages.
   void add_frame(std::string name, double begin_ms, const FrameStats& frame);
   [[nodiscard]] std::span<const Event> events() const { return events_; }
 

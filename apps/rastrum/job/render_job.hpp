@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A job of `rastrum render`: its inputs are opened, and lights, shader and camera are decided,
-// which the options leave to them.
+// A job of `rastrum render`: inputs are opened, and lights, shader and camera that depend on them
+// are decided.
 #pragma once
 
 #include <functional>
@@ -27,13 +27,12 @@ struct RenderJob {
   RenderJob(const RenderJob&) = delete;
   RenderJob& operator=(const RenderJob&) = delete;
 
-  /// Calls f in the process that writes the files; where there are several, all throw what it
-  /// throws, in `phase`.
+  /// Calls f in the process that writes the files; all processes throw what it throws, in `phase`.
   virtual void in_writer(std::string_view /*phase*/, const std::function<void()>& f) { f(); }
 
   const RenderArguments& arguments;
   bool quiet;
-  family::Options render;  ///< the arguments' but for lights of files, `auto` and a rank's threads
+  family::Options render;  ///< the arguments, adapted to the inputs and to a rank
   Annotations notes;
   Camera camera;                 ///< of the first picture
   std::vector<InputPart> parts;  ///< of all inputs

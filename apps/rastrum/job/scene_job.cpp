@@ -21,7 +21,7 @@ Renderer checked_renderer(const family::Options& options) {
 SceneJob::SceneJob(const RenderArguments& a)
     : RenderJob(a, a.quiet), renderer(checked_renderer(a.render)) {
   if (!a.path.empty())
-    static_cast<void>(read_json(a.path));  // a spoilt file is refused before a large scene is read
+    static_cast<void>(read_json(a.path));  // refuses a wrong file before a large scene is read
   const double begin = timeline.now_ms();
   inputs = load_inputs(a.inputs, a.normals, timeline, progress, a.reading);
   check_files(a);
@@ -60,7 +60,7 @@ SceneJob::SceneJob(const RenderArguments& a)
     pictures = {1, [this](std::size_t) -> Sequence::Shot { return {binding->view(), camera}; }};
 }
 
-/// Poses the inputs for --time. Whether they move along the path, too.
+/// Poses the inputs for --time. Returns whether they move along the path.
 bool SceneJob::pose_first() {
   const RenderArguments& a = arguments;
   if (!a.time_s && a.path.empty()) return false;
@@ -80,7 +80,7 @@ std::size_t SceneJob::animation() const {
   return static_cast<std::size_t>(arguments.animation.value_or(0));
 }
 
-/// By the lights of the inputs as they stand, too.
+/// Includes the lights of the inputs.
 void SceneJob::light() {
   if (!arguments.lights.of_files) return;
   render.lights = arguments.render.lights;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A job whose inputs are in memory.
 #pragma once
 
 #include <optional>
@@ -10,13 +9,13 @@
 namespace rastrum::cli {
 
 struct SceneJob : RenderJob {
-  /// Reads the inputs, once it is known that they can be drawn. Throws Error, UsageError.
+  /// Reads the inputs once they are known to be drawable. Throws Error, UsageError.
   explicit SceneJob(const RenderArguments& a);
 
   Renderer renderer;
   Inputs inputs;
   std::optional<SceneBinding> binding;
-  Sequence pictures;  ///< of one, where neither --path nor --turntable says more
+  Sequence pictures;  ///< one, unless --path or --turntable gives more
 
  private:
   [[nodiscard]] bool pose_first();

@@ -62,7 +62,7 @@ class Turntable {
     return {turned_, scene_.materials, scene_.textures};
   }
 
-  /// The nearest and the farthest planes that place_planes finds on the way round.
+  /// The nearest and the farthest planes from place_planes on the way round.
   [[nodiscard]] std::pair<float, float> planes(Camera camera, const BoundingSphere& sphere) const {
     float near = std::numeric_limits<float>::infinity(), far = 0;
     for (std::size_t i = 0; i < count_; ++i) {

@@ -21,20 +21,20 @@ struct Sequence {
   std::function<Shot(std::size_t)> shot;  ///< its scene lasts until the next call
 };
 
-/// A scene that moves, at a moment; the view lasts until the next call.
+/// A moving scene at a moment; the view lasts until the next call.
 using SceneAt = std::function<SceneView(double seconds)>;
 
-/// Pictures at 1/`fps` along the path of `file`; `options` say whether the near plane was given,
-/// `base` is what the first key leaves out. `moving`: where the scene moves, what it is at a time
-/// of the path; else it is `scene`. Both must outlive it. Throws as read_path.
+/// Pictures at 1/`fps` along the path of `file`. `options` say whether the near plane was given,
+/// `base` has what the first key leaves out. `moving`: the scene at a time of the path if it moves,
+/// else `scene` counts. Both must outlive it. Throws as read_path.
 [[nodiscard]] Sequence along_path(const std::filesystem::path& file, double fps,
                                   const SceneView& scene, const SceneAt& moving,
                                   const ViewOptions& options, const Camera& base);
 
-/// `count` pictures of a full turn. The scene turns before the camera and its light, about the axis
-/// through the camera's target along its up, counter-clockwise as seen from above; the first
-/// picture is of the scene as it is. All have one camera, planes included, so that depths can be
-/// compared. `scene` must outlive it.
+/// `count` pictures of a full turn. The scene turns counter-clockwise as seen from above, about the
+/// axis through the camera's target along its up; camera and light stay. The first picture shows
+/// the scene as it is. All have one camera, planes included, so that depths can be compared.
+/// `scene` must outlive it.
 [[nodiscard]] Sequence on_turntable(int count, const SceneView& scene, const ViewOptions& options,
                                     Camera camera);
 

@@ -27,7 +27,7 @@ constexpr PathColumn<TerrainCamera> kTerrainColumns[] = {
     kNumber<&TerrainCamera::altitude>,   kNumber<&TerrainCamera::angle_rad>,
     kNumber<&TerrainCamera::horizon_px>, kNumber<&TerrainCamera::roll_rad>};
 
-/// In degrees, as people write them, or in radians, of which no bit is lost.
+/// In degrees, as people write them, or in radians, which lose no bit.
 void read_angle(JsonFields& fields, const char* degrees, const char* radians, double& angle_rad) {
   const std::optional<double> deg = fields.number(degrees), rad = fields.number(radians);
   if (deg && rad)

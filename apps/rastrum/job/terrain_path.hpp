@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Camera paths over a terrain: the files of camera_path.hpp with a terrain's numbers in their keys.
+// Camera paths over a terrain: camera_path.hpp with a terrain's numbers in the keys.
 #pragma once
 
 #include <filesystem>
@@ -18,11 +18,11 @@ struct TerrainPathKey {
 
 using TerrainPath = KeyedPath<TerrainPathKey>;
 
-/// `base`: what the first key leaves out; a later key takes it from the key before.
+/// `base`: for values that the first key leaves out; a later key takes them from the key before.
 /// Throws Error{not_found, io, bad_format} naming the file and the key.
 [[nodiscard]] TerrainPath read_path(const std::filesystem::path& file,
                                     const terrain::TerrainCamera& base);
-/// Keeps all bits: angles are written in radians. Throws Error{io}.
+/// Keeps all bits: writes angles in radians. Throws Error{io}.
 void write_path(const std::filesystem::path& file, std::span<const TerrainPathKey> keys);
 
 }  // namespace rastrum::cli

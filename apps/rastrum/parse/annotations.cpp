@@ -7,7 +7,7 @@
 namespace rastrum::cli {
 namespace {
 
-/// A number in [least, most], or where least is 0 above it.
+/// A number in [least, most], or above 0 if least is 0.
 void add_number(Parser app, const char* option, const char* type, const char* help,
                 std::optional<double>& value, double least, double most) {
   add(app, option, type, help, [option, least, most, &value](const std::string& s) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Words, axes and effects over a finished picture, as options of the commands that draw one.
+// Words, axes and effects over a finished picture, as options.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,6 @@
 
 namespace rastrum::cli {
 
-/// Text over a picture of any kind.
 struct WordOptions {
   std::string title;
   std::vector<std::string> captions;
@@ -23,7 +22,7 @@ struct WordOptions {
   [[nodiscard]] bool any() const { return !title.empty() || !captions.empty(); }
 };
 
-/// Annotations of a scene, which also need it and its camera.
+/// For scenes: these also need the scene and its camera.
 struct AnnotationOptions {
   WordOptions words;
   ScalarOptions scalars;  ///< whose bar is drawn
@@ -40,11 +39,11 @@ struct AnnotationOptions {
 
 void add_word_options(Parser app, WordOptions& a);
 void add_annotation_options(Parser app, AnnotationOptions& a);
-/// Checks what the parser cannot see by itself. `has_colors`: a picture in colours is drawn. Throws
+/// Checks what the parser cannot check. `has_colors`: a picture in colours is drawn. Throws
 /// UsageError.
 void check_words(const WordOptions& a, bool has_colors);
 void check_annotations(const AnnotationOptions& a, bool has_colors);
-/// A warning about letters that the font has not; empty: it has all.
+/// A warning about letters that the font lacks; empty if it has all.
 [[nodiscard]] std::string missing_glyphs(const WordOptions& a, const std::string& more = {});
 
 /// Translates the options for the library (rastrum/annotate.hpp).

@@ -24,7 +24,6 @@ bool convert(std::string_view text, T& value) {
   throw UsageError(option, "expected " + wanted + ", got '" + std::string(text) + "'");
 }
 
-/// Finite numbers between commas.
 template <std::size_t N>
 void parse_list(std::string_view option, std::string_view text, double (&values)[N],
                 const char* wanted) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Values of options: text to numbers, and the error for a command line that cannot be meant.
+// Values of options: text to numbers, and errors.
 #pragma once
 
 #include <cstdint>
@@ -26,13 +26,12 @@ std::string joined(const Names& names) {
   for (const auto& name : names) all.append(all.empty() ? "" : ", ").append(name);
   return all;
 }
-/// The texts between characters of `separators`: one more than there are of these.
+/// The texts between characters of `separators`, one more than there are of these.
 [[nodiscard]] std::vector<std::string> parts_of(std::string_view text, std::string_view separators);
 
-/// Without capital letters.
 [[nodiscard]] std::string lower(std::string text);
 
-/// In radians: people write degrees.
+/// In radians.
 inline constexpr double kDegree = std::numbers::pi / 180;
 
 /// Each throws UsageError that names `option` and shows what is wanted.
@@ -48,17 +47,17 @@ struct Size {
 [[nodiscard]] std::uint64_t parse_bytes(std::string_view option,
                                         std::string_view text);  ///< N, NK, NM or NG, from 1
 [[nodiscard]] Size parse_size(std::string_view option, std::string_view text);  ///< WxH
-/// '#rrggbb', '#rrggbbaa', '#rgb' or '#rgba', also without the #, or a name of CSS's, in any case:
+/// '#rrggbb', '#rrggbbaa', '#rgb' or '#rgba', also without the #, or a CSS name, in any case:
 /// display values in [0, 1], straight alpha.
 [[nodiscard]] Vec4 parse_color(std::string_view option, std::string_view text);
 
-/// An option whose text `parse` turns into a value; what it throws names the option.
+/// `parse` turns the text into a value; its errors name the option.
 inline Option add(Parser& app, const char* names, const char* type, const std::string& help,
                   std::function<void(const std::string&)> parse) {
   return app.add(names, type, help, std::move(parse));
 }
 
-/// A number for which `is_right` holds; `wanted` says what that means, as in "must be above 0".
+/// `wanted` describes `is_right`, as in "must be above 0".
 [[nodiscard]] double parse_number_that(std::string_view option, std::string_view text,
                                        bool (*is_right)(double), const char* wanted);
 [[nodiscard]] constexpr bool is_above_zero(double value) {
@@ -93,7 +92,7 @@ Option add_vec3(Parser& app, const char* name, const char* type, const std::stri
                  [name, &value](const std::string& text) { value = parse_vec3(name, text); });
 }
 
-/// --size of a picture: members `width` and `height`.
+/// --size: members `width` and `height`.
 template <class Frame>
 void add_size(Parser& app, Frame& frame) {
   add(app, "--size", "WxH", "pixels, up to 32768x32768 (1280x720)", [&frame](const std::string& s) {
@@ -102,7 +101,7 @@ void add_size(Parser& app, Frame& frame) {
     frame.height = size.height;
   });
 }
-/// --device, --threads and --isa of a renderer: members of these names.
+/// --device, --threads and --isa: members of these names.
 template <class Options>
 void add_device_options(Parser& app, Options& o) {
   add_choice(app, "--device", "NAME", "serial, threads, cuda, auto (threads)", o.device,

@@ -13,16 +13,16 @@ namespace rastrum::cli {
 
 enum class Fit {
   tight,   ///< the scene fills the picture (fit_picture)
-  sphere,  ///< a ball around it does (fit_camera): the same camera for any shape of picture
+  sphere,  ///< a ball around it does (fit_camera): one camera for any shape of picture
 };
 
-/// Options of the camera that were given. Everything else is taken from the fitted camera, or from
-/// the file's with `file_camera`. With an eye or a target given, it is taken from the sphere fit.
+/// The given options. Other values come from the fitted camera, or from the file's with
+/// `file_camera`; with an eye or a target from the sphere fit.
 struct ViewOptions {
   Fit fit = Fit::tight;
   bool fit_given = false;
-  bool turns = false;  ///< the scene turns: the tight fit is of all that it sweeps over
-  /// Whence the fitted camera looks; with them it stands where it sees everything.
+  bool turns = false;  ///< the tight fit is of all that the turning scene sweeps over
+  /// The direction of the fitted camera, which stands where it sees everything.
   std::optional<ViewName> view;
   std::optional<double> azimuth_deg, elevation_deg, roll_deg, zoom;
   std::optional<int> file_camera;
@@ -36,12 +36,12 @@ struct ViewOptions {
   [[nodiscard]] bool has_view() const { return view || azimuth_deg || elevation_deg || roll_deg; }
 };
 
-/// Adds the options; parsing fills `v`, which must outlive `app`.
+/// Parsing fills `v`, which must outlive `app`.
 void add_camera_options(Parser app, ViewOptions& v);
-/// The view that names and angles say. Throws UsageError.
+/// Throws UsageError.
 [[nodiscard]] View view_of(const ViewOptions& options);
-/// Throws UsageError for values that no camera can have, and for options that leave no room for
-/// each other; needs no scene, so it comes first.
+/// Throws UsageError for impossible values, and for options that exclude each other. Needs no
+/// scene, so it comes first.
 void check_view(const ViewOptions& options);
 
 }  // namespace rastrum::cli

@@ -13,7 +13,7 @@ namespace rastrum::cli {
 
 namespace {
 
-/// Calls f(row) for each image that the program writes by its name.
+/// Calls f(row) for each image that the program writes by name.
 template <class F>
 void each_kind(const F& f) {
   raster::for_each_target([&](const auto& row) {
@@ -23,7 +23,7 @@ void each_kind(const F& f) {
   });
 }
 
-/// Integers have no EXR, and two channels no names there.
+/// EXR has no such integers, and no names for two channels.
 template <class T>
 constexpr bool kHasExr = !std::is_same_v<T, std::int64_t> && !std::is_same_v<T, Vec2>;
 

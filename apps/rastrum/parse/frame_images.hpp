@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The images of a frame beside its picture that `--image NAME=FILE` writes: what is seen at each
-// pixel (docs/outputs.md).
+// The images of a frame that `--image NAME=FILE` writes (docs/outputs.md).
 #pragma once
 
 #include <string>
@@ -14,7 +13,6 @@
 
 namespace rastrum::cli {
 
-/// One that is asked for.
 struct FrameImage {
   std::string_view name;  ///< as on the command line
   Output output;
@@ -22,12 +20,12 @@ struct FrameImage {
 
 /// NAME=FILE. Throws UsageError that lists the names.
 [[nodiscard]] FrameImage parse_frame_image(const std::string& text);
-/// The names, for help texts.
+/// For help texts.
 [[nodiscard]] std::string frame_image_names();
 
 using FrameImagePixels =
     std::variant<Image<float>, Image<std::int64_t>, Image<Vec2>, Image<Vec3>, Image<Vec4>>;
-/// Allocates the images of these names, in their order, and names them in `targets`.
+/// Allocates these images in their order and puts them into `targets`.
 void add_frame_images(const std::vector<std::string_view>& images, int width, int height,
                       std::vector<FrameImagePixels>& pixels, Targets& targets);
 

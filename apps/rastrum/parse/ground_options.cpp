@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* kNumbers = "height";
 
-/// The way of the sun's light, as --light directional has it.
+/// The sun's light as a --light directional.
 std::string direction_of(const terrain::Sun& sun) {
   const auto a = elementary::sin_cos(sun.azimuth_deg * kDegree),
              e = elementary::sin_cos(sun.elevation_deg * kDegree);

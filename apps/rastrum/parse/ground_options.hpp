@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How `rastrum terrain` shows its ground beside the sun: lights as meshes have them, heights as
-// numbers with their bar, axes and a box around the map.
+// How `rastrum terrain` shows its ground: lights as for meshes, heights as numbers with their bar,
+// axes and a box around the map.
 #pragma once
 
 #include <functional>
@@ -35,8 +35,8 @@ struct GroundShown {
 /// Adds --cmap, --bar and their like, --axes and --bounds.
 void add_ground_options(Parser app, GroundOptions& ground);
 
-/// Checks what the parser cannot see by itself. Options of how numbers become colours imply
-/// `--scalars height`. `given`: whether an option was. Throws UsageError.
+/// Checks what the parser cannot check. Options of how numbers become colours imply `--scalars
+/// height`. `given`: whether an option was. Throws UsageError.
 void check_ground(GroundOptions& ground, const TerrainSceneArguments& a, const FrameOptions& frame,
                   const LightChoice& choice, bool has_colors,
                   const std::function<bool(const char*)>& given);

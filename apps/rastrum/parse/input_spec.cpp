@@ -28,7 +28,7 @@ bool says_its_format(const std::string& input) {
   });
 }
 
-/// Rows of the rotation about `axis`, counter-clockwise as seen from its end.
+/// A rotation about `axis`, counter-clockwise as seen from its end.
 Mat4d rotation(int axis, double degrees) {
   const SinCos a = sin_cos_degrees(degrees);
   Mat4d m = Mat4d::identity();
@@ -39,7 +39,7 @@ Mat4d rotation(int axis, double degrees) {
   return m;
 }
 
-/// Whether `name` is one of the keys; sets what it stands for.
+/// Sets the value of a key. Returns whether `name` is one.
 bool set(InputSpec& spec, const std::string& input, std::string_view name, std::string_view value) {
   const std::string option = std::string(input).append(": ").append(name);
   Placement& p = spec.placement;
@@ -63,7 +63,7 @@ bool set(InputSpec& spec, const std::string& input, std::string_view name, std::
   return true;
 }
 
-/// Takes the keys out of the list `items`; calls other(item) for what is none.
+/// Takes the keys out of the list `items`; calls other(item) for the rest.
 template <class F>
 void take_keys(InputSpec& spec, const std::string& input, std::string_view items,
                const char* separators, const F& other) {
@@ -108,7 +108,7 @@ InputSpec parse_input(const std::string& text) {
   if (at != std::string::npos) {
     const std::string before = text.substr(0, at);
     const std::string items = text.substr(at + 1);
-    // A name with an @ that does not exist is reported as it is written.
+    // A file with an @ in its name that does not exist is reported by that name.
     if (builtin || exists(before) || items.find('=') != std::string::npos) {
       spec.source = before;
       take_keys(spec, text, items, ",", [&](std::string_view item) {

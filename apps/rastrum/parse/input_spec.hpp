@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An INPUT of the command line: which file or shape, how it is read, where it stands and how it
+// An INPUT of the command line: its file or shape, how it is read, where it stands and how it
 // looks.
 #pragma once
 
@@ -15,8 +15,7 @@ namespace rastrum::cli {
 
 inline constexpr std::string_view kBuiltin = "builtin:";
 
-/// Scaled about its origin, then turned about the world's x, y and z axes in this order, then
-/// moved.
+/// Scaled about its origin, turned about the world's x, y and z axes in this order, then moved.
 struct Placement {
   double x = 0, y = 0, z = 0, scale = 1;
   double rx_deg = 0, ry_deg = 0, rz_deg = 0;
@@ -25,7 +24,7 @@ struct Placement {
   [[nodiscard]] Mat4d matrix() const;
 };
 
-/// Instead of what a file says.
+/// Replaces what a file says.
 struct Look {
   std::optional<Vec4> color;  ///< display values, straight alpha
   double opacity = 1;
@@ -40,15 +39,15 @@ struct InputSpec {
 };
 
 /// `SOURCE[@name=value,…]` with x, y, z, scale, rx, ry, rz (degrees), color and opacity; a builtin
-/// takes them among its own parameters, too. A file of that very name is meant before anything
-/// else, whatever its name looks like. Throws UsageError that names the input.
+/// takes them also among its own parameters. A file of that exact name comes first. Throws
+/// UsageError that names the input.
 [[nodiscard]] InputSpec parse_input(const std::string& text);
 
 enum class Normals {
-  file,    ///< the file's, made with creases where it has none
-  crease,  ///< smooth but for edges sharper than the crease angle, always made
-  vertex,  ///< area-weighted, always made
-  face,    ///< one a triangle
+  file,    ///< the file's; made with creases if it has none
+  crease,  ///< always made; smooth but for edges sharper than the crease angle
+  vertex,  ///< always made; area-weighted
+  face,    ///< one per triangle
 };
 
 struct NormalOptions {
@@ -56,22 +55,22 @@ struct NormalOptions {
   double crease_deg = 40;  ///< 180: as Normals::vertex
 };
 
-/// Sizes of points and lines, px.
+/// In px.
 struct PixelSizes {
   float point = 1, line = 1;
 };
 
 struct InputReading {
-  std::string format{};  ///< for inputs without an extension: one of io::scene_formats, or empty
+  std::string format{};  ///< of inputs without an extension: one of io::scene_formats, or empty
   io::ReadOptions options{};
 };
 
 [[nodiscard]] bool is_stdin(const std::string& source);
-/// Whether it is a pipe, or has to be taken for one: nothing but `format` says what it is.
+/// Whether only `format` tells what it is, as for a pipe.
 [[nodiscard]] bool is_unnamed(const std::string& source, std::string_view format);
-/// Throws UsageError for a pipe without a format, and where standard input is asked for twice.
+/// Throws UsageError for a pipe without a format, and for two uses of standard input.
 void check_inputs(const std::vector<std::string>& inputs, std::string_view format);
-/// Remembers that they are read, so that no output replaces one (files.hpp).
+/// So that no output replaces one (files.hpp).
 void remember_inputs(const std::vector<std::string>& inputs);
 
 }  // namespace rastrum::cli

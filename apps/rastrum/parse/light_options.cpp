@@ -30,7 +30,7 @@ float radians(const std::string& text) {
   return static_cast<float>(parse_number(kOption, text) * kDegree);
 }
 
-/// A light of a kind as it is without anything further, and what of it a place sets.
+/// A light of a kind with defaults only.
 Light light_of(const std::string& kind) {
   Light light;
   if (kind == "ambient") {
@@ -85,7 +85,7 @@ void set_place(Light& light, const std::string& text) {
     throw UsageError(kOption, "an ambient light has no place: '" + text + "'");
 }
 
-/// Whether the light has a value of that name.
+/// Returns whether the light has such a value.
 bool set_value(Light& light, const std::string& name, const std::string& value) {
   auto* const spot = std::get_if<SpotLight>(&light.kind);
   auto* const point = std::get_if<PointLight>(&light.kind);
@@ -174,7 +174,7 @@ void add_file_lights(const Scene& scene, std::vector<Light>& lights) {
 
 namespace {
 
-/// Texts of --help for options that meshes and ground have in common.
+/// Texts of --help for options of both meshes and ground.
 struct LightHelp {
   const char *lights, *instead, *tone, *exposure;
 };

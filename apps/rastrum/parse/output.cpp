@@ -24,7 +24,7 @@ const char* extension(Format format) {
   return kExtensions[static_cast<std::size_t>(format)];
 }
 
-/// One name for each file, whether it exists or not.
+/// One name per file, whether it exists or not.
 fs::path resolved(const fs::path& file) {
   std::error_code error;
   const fs::path absolute = fs::absolute(file, error);
@@ -32,7 +32,7 @@ fs::path resolved(const fs::path& file) {
   return error ? absolute.lexically_normal() : canonical;
 }
 
-/// The output files of a run: each belongs to one option, and none is read.
+/// The output files of a run. Each belongs to one option, and none is read.
 class Written {
  public:
   void add(const Output& output) {
@@ -42,7 +42,7 @@ class Written {
     const auto [name, is_new] = names_.try_emplace(resolved(output.file), output.option);
     if (!is_new) refuse(output, name->second);
     if (!exists) return;
-    // Hard links are names of one file, too. Between the pictures of one option they are harmless.
+    // Hard links name one file, too. Between the pictures of one option they are harmless.
     const auto file = files_.try_emplace({info.st_dev, info.st_ino}, output.option).first;
     if (file->second != output.option) refuse(output, file->second);
   }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files that are to be written, as options name them: format by extension, and checked before any
-// work is done.
+// Output files as options name them, with a format by extension; checked before any work.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +16,7 @@ namespace rastrum::cli {
 
 enum class Format { png, exr, npy, ply, json, mp4 };
 
-/// A file that an option asks for; `file` is empty where the option was not given.
+/// `file` is empty if the option was not given.
 struct Output {
   std::string option;
   std::filesystem::path file;
@@ -26,35 +25,34 @@ struct Output {
   explicit operator bool() const { return !file.empty(); }
   [[nodiscard]] bool to_stdout() const { return file == "-"; }
   [[nodiscard]] bool is_film() const { return !file.empty() && format == Format::mp4; }
-  /// For messages.
   [[nodiscard]] std::string name() const;
 };
 
-/// The format by extension, any case. Where the name does not say it is `format`, if given; "-" or
-/// /dev/stdout is standard output, otherwise in the first of `formats`.
-/// Throws UsageError unless it is one of `formats`, or where name and `format` contradict.
+/// The format comes from the extension, in any case, else from `format`; "-" or /dev/stdout is
+/// standard output, by default in the first of `formats`. Throws UsageError unless it is one of
+/// `formats`, or if name and `format` contradict.
 [[nodiscard]] Output parse_output(std::string_view option, const std::string& file,
                                   const std::vector<Format>& formats,
                                   std::optional<Format> format = {});
 
-/// An option whose FILE `output` is; `name` has static storage.
+/// Parses FILE into `output`; `name` has static storage.
 Option add_output(Parser& app, const char* name, const std::string& help, Output& output,
                   std::vector<Format> formats);
 
-/// Throws UsageError where two options name one file, or one that is read (files.hpp; links are
-/// followed), or a picture would go to a terminal, Error{io} where a directory or a file is missing
-/// or not writable, before an hour of work ends with that. Outputs not asked for are ignored.
-/// Removes the temporaries of killed programs from those directories.
-/// `hash`: pictures' digests are printed to standard output, which has no room for more.
+/// Checks before an hour of work: throws UsageError if two options name one file, or one that is
+/// read (files.hpp; links are followed), or if a picture would go to a terminal; Error{io} if a
+/// directory or a file is missing or not writable. Ignores outputs not asked for. Removes the
+/// temporaries of killed programs from those directories. `hash`: standard output gets digests, and
+/// has no room for more.
 void check_outputs(std::span<const Output* const> outputs, bool hash = false);
 
-/// Throws UsageError where `output` is a file that has been read by now.
+/// Throws UsageError if `output` is a file that has been read by now.
 void check_is_not_read(const Output& output);
 
-/// A name with one %d, %3d or %04d in it (%% is a percent sign), or without any.
+/// A name with at most one %d, %3d or %04d in it; %% is a percent sign.
 class NumberedName {
  public:
-  /// Throws UsageError naming `option` for any other use of the percent sign.
+  /// Throws UsageError naming `option` for other percent signs.
   NumberedName(std::string_view option, std::string_view pattern);
   [[nodiscard]] bool has_number() const { return has_number_; }
   [[nodiscard]] std::string at(std::size_t number) const;
@@ -65,18 +63,18 @@ class NumberedName {
   std::size_t width_ = 0;
 };
 
-/// The `output` for picture `number`; a film is the same for all. Throws UsageError where `count`
-/// pictures share a name.
+/// For picture `number`; a film is the same for all. Throws UsageError if `count` pictures share a
+/// name.
 [[nodiscard]] Output numbered(Output output, std::size_t number, std::size_t count);
-/// Checks for all pictures of a sequence, before the first is written, that no output is another or
-/// is read. `of_pictures`: outputs of each picture; `of_run`: those of the whole run.
+/// Checks, before the first picture of a sequence is written, that no output is another or is read.
+/// `of_pictures`: one file per picture; `of_run`: one for the run.
 void check_numbered(std::span<const Output* const> of_pictures,
                     std::span<const Output* const> of_run, std::size_t count);
 
-/// Options that are of a whole run, for meshes and terrains.
+/// Options of a whole run, for meshes and terrains.
 struct RunOptions {
-  std::filesystem::path path;  ///< of the camera; empty: none
-  std::optional<double> fps;   ///< pictures a second
+  std::filesystem::path path;  ///< of the camera; may be empty
+  std::optional<double> fps;   ///< pictures per second
   std::optional<int> frames;   ///< times that one picture is drawn
   bool quiet = false, hash = false;
   Output stats;

@@ -139,7 +139,7 @@ void settle(RenderArguments& a) {
     throw UsageError("--output-format", "is for -o");
   if (o.asked_for().empty() && !a.stats && !a.trace && !a.hash)
     throw UsageError("-o", "say where the picture goes, as in -o picture.png");
-  // Numbers beside colours are compared with others.
+  // Numbers beside the colours mean that the picture is compared, not only shown.
   const bool asks_for_numbers = o.asked_for().size() > (o.color ? 1 : 0);
   set_look(a, is_to_be_shown(a) && !asks_for_numbers, a.path.empty(), a.has_colors());
   check_scene_arguments(a);
@@ -160,7 +160,7 @@ void settle(RenderArguments& a) {
   if (a.turntable != 0 && a.view.file_camera)
     throw UsageError("--turntable",
                      "the camera of a file has no target to turn about: give --eye and --target");
-  if (a.is_sequence()) static_cast<void>(o.numbered(0, 1));  // throws for a spoilt %d
+  if (a.is_sequence()) static_cast<void>(o.numbered(0, 1));  // throws for a wrong %d
   a.view.turns = a.turntable != 0;
 }
 

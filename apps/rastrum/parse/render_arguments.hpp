@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The command line of `rastrum render`.
 #pragma once
 
 #include <optional>
@@ -17,44 +16,40 @@ enum class DepthUnit { reversed, world };
 /// When a file is mapped and drawn in chunks (job/large_job.hpp).
 enum class OutOfCore { automatic, always, never };
 
-/// The outputs that hold one picture.
 struct PictureOutputs {
   Output color, depth, ids, objects, heatmap, errors;
   std::vector<FrameImage> images;
 
   [[nodiscard]] std::vector<const Output*> asked_for() const;
-  /// The same for picture `number` of `count`; throws as numbered(Output) does.
+  /// For picture `number` of `count`; throws as numbered(Output).
   [[nodiscard]] PictureOutputs numbered(std::size_t number, std::size_t count) const;
 };
 
 struct RenderArguments : SceneArguments, RunOptions {
-  int turntable = 0;  ///< pictures of a full turn; 0: it does not turn
+  int turntable = 0;  ///< pictures of a full turn; 0: none
   std::optional<double> time_s;
   std::optional<int> animation;
-  bool prepares = false;  ///< meshes, before the first picture
+  bool prepares = false;  ///< prepares meshes before the first picture
   std::optional<DepthUnit> depth_unit;
-  std::optional<std::string> color_file;  ///< what -o says; with color_format it makes the output
+  std::optional<std::string> color_file;  ///< the text of -o; with color_format it makes the output
   std::optional<Format> color_format;
   PictureOutputs outputs;
   Output trace;
   OutOfCore out_of_core = OutOfCore::automatic;
   std::optional<double> timeout_s;  ///< of ranks that wait for each other; none: for ever
 
-  /// Whether one run draws many pictures.
   [[nodiscard]] bool is_sequence() const { return !path.empty() || turntable != 0; }
-  /// Whether a picture in colours is drawn.
   [[nodiscard]] bool has_colors() const { return outputs.color || outputs.errors || hash; }
   /// Whether --hash is of the 8-bit colours because no picture is written.
   [[nodiscard]] bool hashes_alone() const { return hash && outputs.asked_for().empty(); }
 };
 
-/// Adds INPUT and all options; parsing fills `a`, which must outlive `app`.
+/// Parsing fills `a`, which must outlive `app`.
 void add_render_options(Parser app, RenderArguments& a);
-/// Decides what options leave to each other, and throws UsageError for what the parser cannot see
-/// by itself. Called once, when all options are read.
+/// Resolves options that depend on each other, and throws UsageError for what the parser cannot
+/// check. Call it once all options are read.
 void settle(RenderArguments& a);
-/// Throws where outputs cannot be written. Called again once the inputs have told which files they
-/// name.
+/// Throws if outputs cannot be written. Called again once the inputs have named their files.
 void check_files(const RenderArguments& a);
 
 }  // namespace rastrum::cli

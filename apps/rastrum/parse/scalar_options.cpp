@@ -46,8 +46,7 @@ ColorMap parse_map(const std::string& text) {
   }
 }
 
-/// The usage error for an Error of a ScalarMapping: names the option that the refused field comes
-/// from.
+/// Names the option of the field that a ScalarMapping refused.
 UsageError of_option(const Error& e) {
   constexpr std::pair<std::string_view, const char*> kOptions[] = {
       {"map", "--cmap"},
@@ -122,7 +121,7 @@ void add_scalar_options(Parser app, ScalarOptions& s, NumbersOf of) {
             all.mapping.nan = parse_color("--nan-color", v);
             all.nan_given = true;
           });
-  if (is_terrain) app = app.under("");  // of meshes alone
+  if (is_terrain) app = app.under("");  // for meshes alone
   add_one("--scalar-opacity", "V:A,V:A,...", "opacity at these numbers, linear between them",
           [&m](ScalarOptions&, const std::string& v) { m.opacity = parse_opacity(v); });
   add_one("--isolines", "N|V,V,...",
@@ -165,7 +164,7 @@ void check_scalars(const ScalarOptions& s, bool has_colors) {
   if (s.of_lines != nullptr && s.isoline_count == 0 && s.mapping.isolines.empty())
     throw UsageError(s.of_lines, "is for --isolines");
   try {
-    // Refuses mappings that are wrong whatever the numbers are.
+    // Refuses mappings that are wrong for any numbers.
     ScalarMapping m = s.mapping;
     if (!m.range) m.range = ScalarRange{1, 2};
     static_cast<void>(ScalarColors(m, {}));

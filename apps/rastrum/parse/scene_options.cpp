@@ -14,7 +14,6 @@
 namespace rastrum::cli {
 namespace {
 
-/// An option that is a name of an axis.
 void add_axis(Parser& app, const char* option, const std::vector<family::AxisInfo>& axis,
               std::string& value) {
   const std::vector<std::string> names = axis_names(axis);
@@ -269,7 +268,7 @@ void set_look(SceneArguments& a, bool shows, bool has_corner, bool has_colors) {
   ViewOptions& v = a.view;
   if (!v.has_view() && !v.eye && !v.target && !v.file_camera && has_corner) {
     v.view = ViewName::iso;
-    // Wider lenses make what is near too large: looked at over twenty files.
+    // Wider lenses make near parts too large, in a look at over twenty files.
     if (!v.fov_deg) v.fov_deg = 30;
   }
   if (!a.samples_given && shows) a.render.samples = 4;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The options that say what is drawn and how, shared by the commands that draw meshes.
+// The content and the look of pictures of meshes, as options.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,7 @@
 
 namespace rastrum::cli {
 
-/// Which defaults of light, corner and samples apply where nothing else is given (docs/light.md).
+/// The defaults of light, corner and samples (docs/light.md).
 enum class LookName { studio, plain };
 
 struct SceneArguments {
@@ -31,53 +31,48 @@ struct SceneArguments {
   LightChoice lights;
   AnnotationOptions annotations;
   std::optional<LookName> look;
-  std::vector<Parser::Given> given;  ///< the options of the command line, where they are kept
+  std::vector<Parser::Given> given;  ///< of the command line, if they are kept
 };
 
-/// Adds --format, for a command that reads meshes.
 void add_reading_options(Parser app, InputReading& reading);
-/// Adds INPUT, --format and the groups of options to `app`; parsing fills `a`, which must outlive
-/// it.
+/// Parsing fills `a`, which must outlive `app`.
 Option add_input_option(Parser& app, SceneArguments& a);
 void add_picture_options(Parser app, SceneArguments& a);
 void add_transparency_options(Parser app, SceneArguments& a);
 void add_machine_options(Parser app, SceneArguments& a);
 inline constexpr const char* kMachineGroup = "Machine";
-/// Parts of these, for pictures that something else begins and the scene is drawn into.
+/// Parts of these, for scenes that are drawn into existing pictures.
 void add_shading_options(Parser app, SceneArguments& a);
 void add_blending_options(Parser app, SceneArguments& a);
 void add_rasterizer_options(Parser app, SceneArguments& a);
 
 void add_look_option(Parser app, SceneArguments& a);
-/// Whether nothing is said of how a picture is found: then nobody compares it with others.
+/// Whether no option says how a picture is found: then it is not compared with others.
 [[nodiscard]] bool is_to_be_shown(const SceneArguments& a);
-/// The picture of those who do not say how. `shows`: light and samples are those of a picture to
-/// show, where `look` says neither; `has_corner`: a corner is chosen where nothing is said of the
-/// camera; `has_colors`: there are some to darken.
+/// Sets defaults. If `look` is not given: `shows` chooses light and samples of a picture to show,
+/// `has_corner` a corner without a given camera; `has_colors`: there are colours to darken.
 void set_look(SceneArguments& a, bool shows, bool has_corner, bool has_colors);
 
-/// `auto` and the names of an axis.
 [[nodiscard]] std::vector<std::string> axis_names(const std::vector<family::AxisInfo>& axis);
 
-/// The shapes of INPUT and their defaults, for the end of --help.
+/// For the end of --help.
 [[nodiscard]] std::string shapes_help();
 
-/// The method of a name, or filter:K with K from 1 to 64, into `options`. Throws UsageError that
-/// lists them.
+/// Parses a method's name, or filter:K with K from 1 to 64. Throws UsageError that lists them.
 void parse_transparency(const std::string& text, TransparencyOptions& options);
-/// The names that parse_transparency knows.
+/// For parse_transparency.
 [[nodiscard]] std::string transparency_list();
-/// The same one by one, with the filter as `now` has it, else of 3.
+/// One by one, with the filter of `now`, else of 3.
 [[nodiscard]] std::vector<std::string> transparency_names(const TransparencyOptions& now);
-/// The one that parse_transparency reads as these options.
+/// The name that parse_transparency reads as these options.
 [[nodiscard]] std::string transparency_name(const TransparencyOptions& options);
 /// K of filter:K; 0 for other methods.
 [[nodiscard]] int filter_of(const TransparencyOptions& options);
 
-/// From the CLI's text after --alpha-threshold; empty: paper 4's 1 − 1/128. Throws UsageError.
+/// The text of --alpha-threshold; empty: paper 4's 1 − 1/128. Throws UsageError.
 [[nodiscard]] float parse_alpha_threshold(const std::string& text);
 
-/// Checks what the parser cannot see by itself, before anything is read. Throws UsageError.
+/// Checks what the parser cannot check, before anything is read. Throws UsageError.
 void check_scene_arguments(const SceneArguments& a);
 
 }  // namespace rastrum::cli

@@ -11,7 +11,6 @@
 namespace rastrum::cli {
 namespace {
 
-/// N numbers with commas between them.
 std::vector<double> parse_numbers(const char* option, const std::string& text, std::size_t n,
                                   const char* wanted) {
   const std::vector<std::string> parts = parts_of(text, ",");
@@ -29,7 +28,7 @@ Rgba8 parse_rgb(const char* option, const std::string& text) {
   return {channel(c.x), channel(c.y), channel(c.z), 255};
 }
 
-/// DENSITY[,START][,COLOUR]: what comes third, or does not begin as a number does, is a colour.
+/// DENSITY[,START][,COLOUR]: a third part, or one that does not begin like a number, is a colour.
 terrain::Fog parse_fog(const std::string& text) {
   terrain::Fog fog;
   std::string rest = text;

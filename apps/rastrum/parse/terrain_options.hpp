@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The options that say which terrain is drawn, from where and in which light, shared by the
-// commands that draw it.
+// Which terrain is drawn, from where and in which light, as options.
 #pragma once
 
 #include <filesystem>
@@ -17,7 +16,6 @@
 
 namespace rastrum::cli {
 
-/// The words of options.
 inline const Choices<terrain::MapFilter> kFilters{{"none", terrain::MapFilter::none},
                                                   {"bilinear", terrain::MapFilter::bilinear},
                                                   {"mip", terrain::MapFilter::mip}};
@@ -32,40 +30,40 @@ inline const Choices<terrain::Shadows> kShadows{{"none", terrain::Shadows::none}
                                                 {"sharp", terrain::Shadows::sharp},
                                                 {"soft", terrain::Shadows::soft}};
 
-/// Everything that a picture of a terrain depends on but terrain, light and camera.
+/// A picture depends on these beside terrain, light and camera.
 struct TerrainLook : terrain::TerrainOptions, terrain::TerrainRendererOptions {};
 
 struct TerrainInput {
   std::optional<std::filesystem::path> height, color;
   io::RawSize raw_size;                ///< size and byte order of raw heights
   std::optional<double> height_scale;  ///< none: the file's own, or one that suits its heights
-  /// If the file does not give a unit, takes the original program's (1/257 of a cell for 16 bits,
-  /// else a cell) instead of one that suits the heights.
+  /// Without a unit in the file: the original program's (1/257 of a cell for 16 bits, else a cell)
+  /// instead of one that suits the heights.
   bool classic_scale = false;
-  std::string function;  ///< a name or an expression, where there is no file
+  std::string function;  ///< a name or an expression, if there is no file
 };
 
-/// The tiling if none is given: `none` for files that end at their edge (io::ends_at_edge).
+/// `none` for files that end at their edge (io::ends_at_edge).
 [[nodiscard]] terrain::Tiling suited_tiling(const TerrainInput& input);
 
 struct TerrainSceneArguments {
   TerrainInput input;
   TerrainLook options;
   bool filter_given = false, tile_given = false;
-  bool sky_dims = true;  ///< with a low sun; one of the caller's own does not
-  bool dim_sky = false;  ///< but where that is asked for
+  bool sky_dims = true;  ///< with a low sun, unless the colour was given
+  bool dim_sky = false;  ///< even then
   terrain::Light light;
   std::optional<double> x, y, altitude, horizon_px;
   double angle_deg = 0, roll_deg = 0;
 
-  /// The program filters, with the steps that go with it, unless it is told otherwise.
+  /// The program filters by default, with the steps that go with it.
   TerrainSceneArguments() {
     options.filter = terrain::MapFilter::bilinear;
     options.step = 0;
   }
 };
 
-/// Each adds a group of options to `app`; parsing fills `a`, which must outlive it.
+/// Parsing fills `a`, which must outlive `app`.
 void add_terrain_inputs(Parser app, TerrainSceneArguments& a);
 void add_terrain_camera(Parser app, TerrainSceneArguments& a);
 void add_terrain_picture(Parser app, TerrainSceneArguments& a);
@@ -73,7 +71,7 @@ void add_terrain_light(Parser app, TerrainSceneArguments& a);
 void add_terrain_machine(Parser app, TerrainSceneArguments& a);
 
 /// Sets options that were not given and depend on others: the original program (--classic) has no
-/// filter and a scale of its own. Called once all options are read.
+/// filter and its own scale. Call it once all options are read.
 void settle(TerrainSceneArguments& a);
 
 /// The sky's colour with the sun there.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The base of all cameras' controls: keys and a button that are held, and a count of changes.
+// The base of all camera controls: held keys, a drag, and a count of changes.
 #pragma once
 
 #include <set>
@@ -19,14 +19,14 @@ class CameraControl {
   [[nodiscard]] unsigned long version() const { return version_; }
 
  protected:
-  /// Whether a key of `keys` that moves is held or a drag is on: the next picture will differ.
+  /// Whether a moving key of `keys` or a drag is held.
   [[nodiscard]] bool moves(std::span<const KeyHelp> keys) const;
   [[nodiscard]] bool held(std::string_view key) const { return held_.contains(key); }
-  /// 1, −1 or 0 where `forth`, `back` or both are held.
+  /// 1, −1 or, if both are held, 0.
   [[nodiscard]] double way(const char* forth, const char* back) const {
     return static_cast<double>(held(forth)) - static_cast<double>(held(back));
   }
-  /// With Shift held, movement is so many times as fast.
+  /// Shift multiplies the speed.
   [[nodiscard]] double pace() const { return held("left shift") || held("right shift") ? 4 : 1; }
   virtual void begin_drag(const Event& /*press*/) {}
   virtual void drag(double dx_px, double dy_px) = 0;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Input by a person to the window, free of any window library, so that scripts and tests can give
-// it.
+// A person's input, free of any window library, so that scripts and tests can give it.
 #pragma once
 
 #include <string>
@@ -12,12 +11,12 @@ enum class Button { left, middle, right };
 
 struct Event {
   enum class Kind {
-    key_down,     ///< once a press, whatever the keyboard repeats
+    key_down,     ///< once per press, whatever the keyboard repeats
     key_up,       ///
     button_down,  ///< at x, y
     button_up,    ///
-    move,         ///< of the pointer, to x, y
-    wheel,        ///< y notches away from the person
+    move,         ///< the pointer, to x, y
+    wheel,        ///< by y notches away from the person
     leave,        ///< the window lost the keyboard: all keys and buttons are up
   };
   Kind kind = Kind::leave;
@@ -27,12 +26,11 @@ struct Event {
   bool shift = false, ctrl = false;
 };
 
-/// A line of the list of keys: what the panel, --help and the script reader know.
+/// A line of the list of keys, for the panel, --help and the script reader.
 struct KeyHelp {
-  std::string_view keys;  ///< names of Event::key, separated by ", " where there are several
+  std::string_view keys;  ///< names of Event::key, separated by ", "
   std::string_view what;
 
-  /// Calls f(name) for each of the keys.
   template <class F>
   void each(F&& f) const {
     constexpr std::string_view kSeparator = ", ";

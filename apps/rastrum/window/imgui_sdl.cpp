@@ -45,7 +45,7 @@ void draw_imgui(SDL_Renderer* renderer, const ImDrawData& data) {
           command.ClipRect.z - command.ClipRect.x, command.ClipRect.w - command.ClipRect.y};
       const SDL_Rect pixels{static_cast<int>(clip.x), static_cast<int>(clip.y),
                             static_cast<int>(clip.w), static_cast<int>(clip.h)};
-      // SDL takes an empty rectangle for no rectangle at all.
+      // SDL takes an empty rectangle for none.
       if (pixels.w <= 0 || pixels.h <= 0) continue;
       SDL_RenderSetClipRect(renderer, &pixels);
       const ImDrawVert* const vertices = list.VtxBuffer.Data + command.VtxOffset;

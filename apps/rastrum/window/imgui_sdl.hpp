@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Draws Dear ImGui's lists with SDL_Renderer, so that no OpenGL is needed. ImGui's own file for
-// that is in Debian's package only as an example, which systems without /usr/share/doc do not have.
+// Draws Dear ImGui's lists with SDL_Renderer, so that no OpenGL is needed. Debian's package has
+// ImGui's own file for that only as an example.
 #pragma once
 
 struct ImDrawData;
@@ -9,7 +9,7 @@ struct SDL_Texture;
 
 namespace rastrum::cli::window {
 
-/// The texture of ImGui's fonts, made for the current ImGui context. Throws Error{no_device}.
+/// For the current ImGui context. Throws Error{no_device}.
 class ImguiFonts {
  public:
   explicit ImguiFonts(SDL_Renderer* renderer);
@@ -21,7 +21,7 @@ class ImguiFonts {
   SDL_Texture* texture_;
 };
 
-/// Draws the lists that ImGui::Render() has collected over the picture that is there.
+/// Draws the lists of ImGui::Render() over the picture.
 void draw_imgui(SDL_Renderer* renderer, const ImDrawData& data);
 
 }  // namespace rastrum::cli::window

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The base of subjects: a control moves the camera, a panel changes the settings, and files
-// of paths have the camera in keys.
+// The base of subjects: a control moves the camera, a panel changes the settings, and path files
+// hold the camera in keys.
 #pragma once
 
 #include <algorithm>
@@ -64,7 +64,7 @@ class KeyedSubject : public Subject {
   KeyedSubject(Control control, Settings settings, std::span<const KeyHelp> commands)
       : control_(std::move(control)), settings_(std::move(settings)), commands_(commands) {}
 
-  /// The camera as it stands: alone, so that it is drawn again bit by bit, and as a key of a path.
+  /// The camera as it is: by itself, to be drawn again bit by bit, and as a key of a path.
   [[nodiscard]] virtual Key key_now() const = 0;
   [[nodiscard]] virtual Key key_of_path(double time_s) const = 0;
   [[nodiscard]] bool is_command(const Event& event) const {

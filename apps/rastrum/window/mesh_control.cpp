@@ -8,11 +8,11 @@
 namespace rastrum::cli::window {
 namespace {
 
-constexpr double kFlySpeed = 0.5;   ///< scene radii a second
-constexpr double kTurnSpeed = 1.5;  ///< rad a second
-constexpr double kZoomSpeed = 2;    ///< factor a second
+constexpr double kFlySpeed = 0.5;   ///< scene radii per second
+constexpr double kTurnSpeed = 1.5;  ///< rad per second
+constexpr double kZoomSpeed = 2;    ///< factor per second
 constexpr double kWheelZoom = 1.15;
-constexpr double kPole = 0.01;  ///< rad that the view keeps from straight up and down
+constexpr double kPole = 0.01;  ///< rad between the view and straight up or down
 
 constexpr KeyHelp kMeshControlKeys[] = {
     {"w, s", "fly forward, back"},     {"a, d", "fly left, right"},
@@ -55,7 +55,7 @@ MeshControl::Axes MeshControl::axes() const {
   return {right, cross(back, right), back};
 }
 
-/// `v` turned about `up`, then towards it (pitch > 0) without reaching it.
+/// Turns `v` about `up`, then towards it (pitch > 0) without reaching it.
 Vec3d MeshControl::rotated(const Vec3d& v, const Vec3d& up, double yaw_rad, double pitch_rad) {
   const double size = length(v), along = dot(v, up) / size;
   const Vec3d across = v * (1 / size) - up * along;
@@ -80,7 +80,7 @@ void MeshControl::shift(const Vec3d& by) {
   target_ = target_ + by;
 }
 
-/// Moves the camera so that points as far away as the target stay under the pointer.
+/// Points as far away as the target stay under the pointer.
 void MeshControl::pan(double dx_px, double dy_px) {
   const double distance = length(eye_ - target_);
   const double across = camera_.orthographic ? double{camera_.orthographic_height}
@@ -90,8 +90,8 @@ void MeshControl::pan(double dx_px, double dy_px) {
   shift((a.up * dy_px - a.right * dx_px) * unit);
 }
 
-/// `factor` > 1 comes nearer. A parallel projection shows less instead. The bounds keep numbers
-/// sane: nobody sees anything beyond them.
+/// `factor` > 1 comes nearer; a parallel projection shows less instead. Nothing is visible beyond
+/// the bounds.
 void MeshControl::zoom(double factor) {
   constexpr double kNearest = 1e-4, kFarthest = 1e4;  // scene radii
   const double r = scene_.radius;
@@ -107,7 +107,6 @@ void MeshControl::zoom(double factor) {
   eye_ = target_ + offset * scale;
 }
 
-/// From the float64 state to the camera.
 void MeshControl::update() {
   camera_.eye = eye_;
   camera_.target = target_;
@@ -116,7 +115,7 @@ void MeshControl::update() {
 }
 
 void MeshControl::drag(double dx_px, double dy_px) {
-  // Across the smaller side of the window is half a turn.
+  // The smaller side of the window is half a turn.
   const double turn = std::numbers::pi / std::min(width_, height_);
   if (drag_ == Drag::pan)
     pan(dx_px, dy_px);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The camera of the mesh viewer as a state machine: events and time in, camera out.
+// The camera of the mesh viewer: events and time in, camera out.
 #pragma once
 
 #include <span>
@@ -13,17 +13,16 @@ namespace rastrum::cli::window {
 
 class MeshControl final : public CameraControl {
  public:
-  /// `home`: the camera to begin with, returned as it is until something moves it.
-  /// `follow_planes`: near and far are set for the scene as the camera moves; else they stay.
+  /// `home`: the first camera, returned as it is until something moves it. `follow_planes`: near
+  /// and far follow the scene as the camera moves.
   MeshControl(const Camera& home, const BoundingSphere& scene, bool follow_planes);
 
-  /// The window's size in pixels, for how far a drag reaches.
+  /// In pixels, for the reach of a drag.
   void resize(int width, int height);
-  /// Moves by what is held. Speeds are per second, so that the way does not depend on the frame
-  /// rate.
+  /// Speeds are per second, so that the way does not depend on the frame rate.
   void advance(double dt_s);
   void go_home() override;
-  /// Stands where `camera` stands, as a replayed path does; home stays.
+  /// For a replayed path; home stays.
   void place(const Camera& camera);
 
   [[nodiscard]] const Camera& camera() const { return camera_; }
@@ -54,7 +53,7 @@ class MeshControl final : public CameraControl {
   bool follow_planes_;
   Vec3d eye_, target_, up_;
   double width_ = 1280, height_ = 720;
-  Drag drag_ = Drag::orbit;  ///< the kind of the last one
+  Drag drag_ = Drag::orbit;  ///< of the last drag
 };
 
 }  // namespace rastrum::cli::window

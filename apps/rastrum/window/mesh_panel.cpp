@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The controls of meshes: each edits a copy of the settings, which is set where one has changed.
+// The controls of meshes. Each edits a copy of the settings, which is set if it has changed.
 #include <imgui.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace rastrum::cli::window {
 namespace {
 
-constexpr float kSectionName = 70;  ///< px that the switch of a section takes
+constexpr float kSectionName = 70;  ///< px of a section's switch
 
 bool choose_shader(Shader& shader) {
   const std::vector<std::string_view> names = shader_names();
@@ -81,7 +81,7 @@ void draw_strip(const ColorMap& map, int steps, float width) {
   ImGui::Dummy({width, height});
 }
 
-/// A list of maps, each beside its colours.
+/// Lists maps beside their colours.
 bool choose_map(MeshSettings& s) {
   bool changed = false;
   if (!ImGui::BeginCombo("colours", s.map.c_str(), ImGuiComboFlags_HeightLargest)) return false;
@@ -173,7 +173,7 @@ bool choose_lines(AnnotationOptions& a) {
   return changed;
 }
 
-/// The slider and the button of a section that is on, behind its switch.
+/// The slider and the button of an active section.
 bool drag_section(Section& section, const ScalarRange& all) {
   ImGui::SameLine(kSectionName);
   bool changed =
@@ -204,7 +204,7 @@ bool choose_sections(const Bounds& box, const Camera& camera, MeshSettings& s) {
   ImGui::PushID("view");
   ViewSection& view = s.view_section;
   if (ImGui::Checkbox("view", &view.on)) {
-    // Each time as one looks then.
+    // From the present camera each time.
     if (view.on) view = section_of_view(camera, box);
     changed = true;
   }

@@ -8,7 +8,7 @@ namespace rastrum::cli::window {
 
 ClipPlane Section::plane(const Vec3d& direction) const {
   const double side = below ? -1 : 1;
-  // No zero has a sign.
+  // Avoids −0.
   const auto turned = [side](double v) { return v == 0 ? 0 : side * v; };
   return {{turned(direction.x), turned(direction.y), turned(direction.z)}, turned(-at)};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Settings that a person changes while looking at a picture of meshes.
+// Settings that a person changes in the window.
 #pragma once
 
 #include <array>
@@ -15,43 +15,41 @@ namespace rastrum::cli::window {
 /// A plane across a direction, which leaves out one side.
 struct Section {
   bool on = false;
-  double at = 0;      ///< where along the direction
+  double at = 0;      ///< along the direction
   bool below = true;  ///< keeps what lies below it
 
   /// `direction`: of length 1.
   [[nodiscard]] ClipPlane plane(const Vec3d& direction) const;
 };
 
-/// One across the way in which somebody looked.
+/// Across the camera's view when it was switched on.
 struct ViewSection : Section {
   Vec3d direction{0, 0, -1};
 };
 
-/// How far a box reaches along a direction.
+/// The extent of a box along a direction.
 [[nodiscard]] ScalarRange reach(const Bounds& box, const Vec3d& direction);
-/// Across the way in which the camera looks, through the middle of the box: what is nearer is left
-/// out.
+/// Across the camera's view, through the middle of the box: the nearer part is left out.
 [[nodiscard]] ViewSection section_of_view(const Camera& camera, const Bounds& box);
 
-/// A pixel.
+/// Per pixel.
 inline const std::vector<int> kSampleCounts{1, 4, 8, 16};
 
-/// Settings that no panel shows stay as the command line had them.
+/// Settings without a control keep the command line's values.
 struct MeshSettings {
   family::Options render;
   AnnotationOptions notes;      ///< effects, axes, and with `scalars` numbers as colours
-  std::string map = "viridis";  ///< of `notes.scalars`, as --cmap has it
-  /// default, headlight, studio or file; empty: as the command line had
+  std::string map = "viridis";  ///< of `notes.scalars`, as for --cmap
+  /// default, headlight, studio or file; empty: as on the command line
   std::string lights;
   std::vector<Light> file_lights;   ///< of the inputs
   bool adds_file_lights = false;    ///< the command line did
   std::array<Section, 3> sections;  ///< across x, y, z
   ViewSection view_section;
-  bool heat_map = false;  ///< fragments at each pixel instead of the picture
+  bool heat_map = false;  ///< fragments per pixel instead of the picture
 
-  /// The planes of the sections that are on.
   [[nodiscard]] std::vector<ClipPlane> cuts() const;
-  /// `render` with lights and sections, of a picture of this size.
+  /// `render` with lights and sections.
   [[nodiscard]] family::Options frame(int width, int height) const;
 };
 

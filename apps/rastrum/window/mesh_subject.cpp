@@ -52,8 +52,7 @@ std::vector<std::pair<std::string, std::string>> rows(const FrameStats& s) {
   return r;
 }
 
-/// Returns the element after `now` in a ring, or before it with `back`; the first where `now` is
-/// not there.
+/// The element after `now` in a ring, or before it with `back`; the first if `now` is missing.
 template <class T>
 T next(const std::vector<T>& ring, const T& now, bool back) {
   const auto found = std::ranges::find(ring, now);
@@ -62,7 +61,7 @@ T next(const std::vector<T>& ring, const T& now, bool back) {
   return ring[(i + (back ? ring.size() - 1 : 1)) % ring.size()];
 }
 
-/// Throws UsageError where lights of files are wanted that have none.
+/// Throws UsageError if files lack the lights that are asked for.
 void check_file_lights(const SceneArguments& a, const Scene& scene) {
   std::vector<Light> all = a.render.lights;
   if (a.lights.of_files) add_file_lights(scene, all);
@@ -105,10 +104,10 @@ std::shared_ptr<LoadedScene> load_scene(const SceneArguments& a) {
   return std::make_shared<LoadedScene>(std::move(inputs));
 }
 
-/// The renderer, made anew where its options or its row change.
+/// Keeps the renderer until its options or its row change.
 class MeshSubject::Painter {
  public:
-  /// `scene` as `notes` want it, with its numbers.
+  /// With the numbers that `notes` show.
   static SceneView view(LoadedScene& scene, const AnnotationOptions& notes, std::uint64_t version) {
     scene.show(notes.scalars, version);
     return scene.binding.view();
@@ -180,7 +179,7 @@ void MeshSubject::change(char key, bool back) {
   family::Options& r = s.render;
   switch (key) {
     case 'm':
-      // From the one that is seen.
+      // From the visible one.
       r.shader = shader_from_name(
           next(shader_names(), name(shader_of(r.shader, scene_->has_materials)), back));
       break;
@@ -297,7 +296,7 @@ Subject::Texts MeshSubject::same_picture(int width, int height, const std::strin
 Worker::Job MeshSubject::open(const std::filesystem::path& file) {
   SceneArguments arguments = arguments_;
   arguments.inputs = {file.string()};
-  // Where the camera stood says nothing about another file.
+  // The camera's place does not fit another file.
   arguments.view.file_camera.reset();
   arguments.view.eye.reset();
   arguments.view.target.reset();
@@ -307,7 +306,7 @@ Worker::Job MeshSubject::open(const std::filesystem::path& file) {
   return [this, arguments]() -> Worker::Done {
     auto scene = load_scene(arguments);
     return [this, arguments, scene] {
-      // Numbers that it has not are not asked of it, and sections were of the other one.
+      // The other scene may lack the numbers, and sections were of the old one.
       ScalarOptions& s = settings_.notes.scalars;
       if (std::ranges::find(scene->scalars, s.name, &ScalarSummary::name) == scene->scalars.end()) {
         s.name.clear();

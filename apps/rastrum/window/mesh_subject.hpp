@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Meshes in the window: the scene, its options and its camera.
 #pragma once
 
 #include <memory>
@@ -16,14 +15,14 @@
 
 namespace rastrum::cli::window {
 
-/// A scene with what is known about it; stays where it is, since the binding points into it.
+/// A scene and its properties. It cannot move, because the binding points into it.
 struct LoadedScene {
   explicit LoadedScene(Inputs inputs);
   LoadedScene(const LoadedScene&) = delete;
   LoadedScene& operator=(const LoadedScene&) = delete;
 
-  /// Shows these numbers, or none. `version` must change whenever `scalars` do. Call it on the
-  /// thread that draws. Throws Error for a name that the scene has not.
+  /// Shows these numbers, or none. `version` must change with `scalars`. Call it on the thread that
+  /// draws. Throws Error for a name that the scene lacks.
   void show(const ScalarOptions& scalars, std::uint64_t version);
 
   Scene scene;
@@ -31,23 +30,22 @@ struct LoadedScene {
   SceneBinding binding;
   BoundingSphere sphere;
   Bounds box;
-  std::vector<ScalarSummary> scalars;  ///< that can be shown, those of every scene last
+  std::vector<ScalarSummary> scalars;  ///< that can be shown; those of every scene last
 
  private:
   std::uint64_t shown_ = 0;
 };
 
-/// Reads the inputs of `a`, with their normals. Throws Error, UsageError.
+/// Throws Error, UsageError.
 [[nodiscard]] std::shared_ptr<LoadedScene> load_scene(const SceneArguments& a);
 
 class MeshSubject final : public KeyedSubject<MeshControl, MeshSettings, PathKey> {
  public:
-  /// Throws UsageError where the camera options do not fit the scene.
+  /// Throws UsageError if the camera options do not fit the scene.
   MeshSubject(SceneArguments arguments, std::shared_ptr<LoadedScene> scene);
   ~MeshSubject() override;
 
   [[nodiscard]] const LoadedScene& scene() const { return *scene_; }
-  /// As the window shows it now.
   [[nodiscard]] Texts same_picture(int width, int height, const std::string& png) const override;
 
   void handle(const Event& event) override;
@@ -65,18 +63,18 @@ class MeshSubject final : public KeyedSubject<MeshControl, MeshSettings, PathKey
  private:
   class Painter;  // of the worker's thread
   [[nodiscard]] PathKey key_now() const override { return {0, control_.camera(), true}; }
-  /// Planes for the way between the keys are found for each picture.
+  /// Planes between the keys are found for each picture.
   [[nodiscard]] PathKey key_of_path(double time_s) const override {
     return {time_s, control_.camera(), false};
   }
   [[nodiscard]] family::Options options_for(int width, int height) const;
   void show(SceneArguments arguments, std::shared_ptr<LoadedScene> scene);
-  /// Switches the option of `key` to its next value, with `back` to the one before.
+  /// Switches the option of `key` to its next value, or with `back` to the one before.
   void change(char key, bool back);
 
   SceneArguments arguments_;
   std::shared_ptr<LoadedScene> scene_;
-  std::uint64_t base_version_ = 0;  ///< so that a new control's versions are new numbers, too
+  std::uint64_t base_version_ = 0;  ///< so that a new control's versions are new, too
   std::shared_ptr<Painter> painter_;
 };
 

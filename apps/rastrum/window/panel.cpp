@@ -13,7 +13,7 @@ constexpr float kPanelWidth = 330, kMargin = 8;
 const ImVec4 kErrorColor{1, 0.45F, 0.4F, 1};
 const ImVec4 kQuiet{0.7F, 0.7F, 0.7F, 1};
 
-/// Each stage as a bar where it lies in the frame.
+/// Each stage as a bar at its time in the frame.
 void draw_stages(const Figures& figures) {
   const double whole = std::max(figures.frame_ms, 1e-6);
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -113,7 +113,7 @@ Area draw_panel(Viewer& viewer, const Controls& controls) {
   offer_texts(viewer);
   choose_hovering(viewer);
   draw_moving(viewer);
-  // A glance has other stages than a whole picture: here they move nothing.
+  // A glance has other stages than a whole picture. Here they move nothing.
   if (viewer.picture() != nullptr && ImGui::CollapsingHeader("Figures")) {
     draw_stages(viewer.picture()->figures);
     draw_rows(viewer.picture()->figures);
@@ -127,7 +127,7 @@ Area draw_panel(Viewer& viewer, const Controls& controls) {
         "zoom.");
     ImGui::TextWrapped("Drop a file on the window to open it.");
   }
-  // Below, where it moves nothing that somebody is about to click.
+  // Below, so that it does not move what is about to be clicked.
   draw_message(viewer.notice(), kQuiet);
   ImGui::PopItemWidth();
   const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
@@ -138,7 +138,7 @@ Area draw_panel(Viewer& viewer, const Controls& controls) {
 void draw_hovered(const Viewer& viewer) {
   const Picked* const picked = viewer.hovered();
   if (picked == nullptr) return;
-  // Where the viewer has it, towards the middle; ImGui asks the screen, which may be late.
+  // From the viewer, because ImGui asks the screen, which may be late. Opens towards the middle.
   const auto x = static_cast<float>(viewer.pointer()->first);
   const auto y = static_cast<float>(viewer.pointer()->second);
   const ImVec2 size = ImGui::GetIO().DisplaySize;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The panel over the picture: what every subject has, with the subject's own controls inside.
+// The panel over the picture, with the subject's own controls inside.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ namespace rastrum::cli::window {
 class MeshSubject;
 class TerrainSubject;
 
-/// The area that a panel covers, px of the window.
+/// In px of the window.
 struct Area {
   float x0 = 0, y0 = 0, x1 = 0, y1 = 0;
   [[nodiscard]] bool holds(double x, double y) const {
@@ -22,20 +22,20 @@ struct Area {
   }
 };
 
-/// Inside an ImGui frame. Returns where the panel is.
+/// Inside an ImGui frame. Returns the panel's area.
 Area draw_panel(Viewer& viewer, const Controls& controls);
-/// Errors and notices alone, where the panel is hidden.
+/// Errors and notices, for a hidden panel.
 void draw_messages(const Viewer& viewer);
-/// Beside the pointer, what lies under it.
+/// Describes beside the pointer what lies under it.
 void draw_hovered(const Viewer& viewer);
 
-/// A list to choose from; true where `now` has changed.
+/// A list to choose from; true if `now` has changed.
 bool choose_name(const char* label, const std::vector<std::string>& names, std::string& now);
 
-/// The same, where `none`, before the names, stands for an empty `value`.
+/// With `none` before the names, for an empty `value`.
 bool choose_name_or_none(const char* label, const std::string& none, std::vector<std::string> names,
                          std::string& value);
-/// The same of the words of an option.
+/// With the words of an option.
 template <class T>
 bool choose_value(const char* label, const Choices<T>& choices, T& value) {
   std::vector<std::string> names;

@@ -11,11 +11,11 @@
 
 namespace rastrum::cli::window {
 
-/// The shortest that is the same number.
+/// The shortest text of the same number.
 [[nodiscard]] std::string number(double v);
 /// X,Y,Z
 [[nodiscard]] std::string numbers(const Vec3d& v);
-/// Degrees that options and Python make the same float32 of radians of.
+/// Degrees from which options and Python make the same float32 of radians.
 [[nodiscard]] double degrees(float rad);
 /// #rrggbbaa of a display value.
 [[nodiscard]] std::string hex(Vec4 c);
@@ -38,7 +38,7 @@ class Words {
   std::string all_;
 };
 
-// Python's.
+// For Python.
 [[nodiscard]] std::string literal(const std::string& text);
 [[nodiscard]] std::string tuple(const Vec3d& v);
 [[nodiscard]] std::string in_brackets(const std::vector<std::string>& items);

@@ -14,7 +14,7 @@ double pixels(std::size_t step) {
 
 void Resolution::add(std::size_t step, double ms) {
   if (ms_[newest_] && newest_ != step) other_ = newest_;
-  // Half of the past, so that one slow frame of a busy machine does not change the size.
+  // Averages with the past, so that one slow frame of a busy machine does not change the size.
   ms_[step] = ms_[step] ? (*ms_[step] + ms) / 2 : ms;
   newest_ = step;
 }
@@ -37,7 +37,7 @@ double Resolution::expected_ms(std::size_t step) const {
 
 std::size_t Resolution::moving_step() const {
   constexpr double kWorth = 1.25;
-  // One size does not tell pixels from triangles: the next one does.
+  // One size does not tell pixels from triangles; the next one does.
   const bool one = ms_[newest_] && !other_;
   if (one && newest_ > 0 && expected_ms(0) > target_ms_) return newest_ - 1;
   const double most = std::max(target_ms_, kWorth * expected_ms(kScales.size() - 1));
@@ -49,7 +49,7 @@ std::size_t Resolution::moving_step() const {
 std::size_t Resolution::still_step(std::size_t last) const {
   constexpr double kLong = 1000;  // ms
   constexpr std::size_t kHalf = 2;
-  // Twice the side in a step that shows where a long one is going.
+  // A step of twice the side first, if the full picture takes long.
   if (last > kHalf && expected_ms(0) > kLong) return last - kHalf;
   return 0;
 }

@@ -8,7 +8,7 @@
 namespace rastrum::cli::window {
 namespace {
 
-/// Options that the window says itself, or that are of windows alone.
+/// Options that the window states itself, or that are for windows alone.
 constexpr std::string_view kSaid[] = {
     "--size",       "--shader",      "--background",   "--opacity", "--transparency", "--samples",
     "--rasterizer", "--visibility",  "--look",         "--device",  "--threads",      "--isa",
@@ -19,7 +19,7 @@ constexpr std::string_view kSaid[] = {
     "--edl",        "--silhouettes", "--edges",        "--script",  "--screenshots",  "--target-ms",
     "--lights",     "--tone",        "--exposure"};
 
-/// Options that go with a switch of the window, and mean nothing without.
+/// Options that depend on a switch of the window.
 struct Dependent {
   std::string_view option;
   bool (*wanted)(const MeshSettings&);
@@ -74,12 +74,12 @@ std::string lights_name(const ShownPicture& shown) {
   const MeshSettings& s = shown.settings;
   if (!s.lights.empty()) return s.lights;
   std::string name = said(shown.arguments.given, "--lights", "");
-  // A file that was opened since need not have any.
+  // A file opened later may have none.
   if (name == "file" && s.file_lights.empty()) return "";
   if (!name.empty()) return name;
   const bool by_light = std::ranges::any_of(
       shown.arguments.given, [](const Parser::Given& g) { return g.name == "--light"; });
-  // Lights without any such option come from the look.
+  // Without such an option lights come from the look.
   return by_light || s.render.lights.empty() ? "" : "studio";
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The picture that a window shows, said so that others draw it: for a shell and for Python.
+// A window's picture as text for a shell and for Python.
 #pragma once
 
 #include <string>
@@ -11,16 +11,16 @@
 namespace rastrum::cli::window {
 
 struct ShownPicture {
-  const SceneArguments& arguments;  ///< as the command line had them
+  const SceneArguments& arguments;  ///< of the command line
   const MeshSettings& settings;
   const Camera& camera;
   int width = 0, height = 0;
 };
 
-/// `rastrum render …`, which writes the same bits to `png`. Options of which the window knows
-/// nothing are repeated as they were given.
+/// `rastrum render …`, which writes the same bits to `png`. Repeats options that the window does
+/// not know.
 [[nodiscard]] std::string command_line(const ShownPicture& shown, const std::string& png);
-/// The same for Python; options that it has no words for are named in a comment.
+/// For Python; a comment names options that it lacks.
 [[nodiscard]] std::string python_lines(const ShownPicture& shown, const std::string& png);
 
 }  // namespace rastrum::cli::window

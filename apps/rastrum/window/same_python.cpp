@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Python that draws the picture of a window.
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
@@ -34,7 +33,7 @@ std::string python_camera(const Camera& c) {
   return camera.text();
 }
 
-/// The display colour of eight bits that --light and Python make this linear one of.
+/// The 8-bit display colour from which --light and Python make this linear one.
 std::string display_hex(Vec3 linear) {
   const auto byte = [](float wanted) {
     for (int i = 0; i < 256; ++i) {
@@ -47,7 +46,7 @@ std::string display_hex(Vec3 linear) {
   return hex({byte(linear.x), byte(linear.y), byte(linear.z), 1}).substr(0, 7);
 }
 
-/// A light as --light has it; `text`: what was said, which names an environment's picture.
+/// `text`: the option's, which names an environment's picture.
 std::string python_light(const Light& light, const std::string& text) {
   constexpr const char* kKinds[] = {"ambient", "hemisphere", "directional",
                                     "point",   "spot",       "environment"};
@@ -86,7 +85,7 @@ std::string python_lights(const std::string& name, bool as_given, const std::vec
   std::vector<std::string> all;
   if (!name.empty() && name != "file") all.push_back(literal(name));
   if (as_given) {
-    // Lights of --light stand behind lights of --lights.
+    // Lights of --light follow those of --lights.
     std::vector<std::string> texts;
     for (const Parser::Given& g : given)
       if (g.name == "--light") texts.insert(texts.end(), g.texts.begin(), g.texts.end());
@@ -99,7 +98,7 @@ std::string python_lights(const std::string& name, bool as_given, const std::vec
 
 namespace {
 
-/// Options that the window repeats and Python has words for.
+/// Options that the window repeats and Python has.
 constexpr std::string_view kPythonHas[] = {
     "--clip-plane",   "--crease",        "--cull",           "--environment-behind",
     "--title",        "--caption",       "--text-scale",     "--occlusion-radius",
@@ -108,7 +107,7 @@ constexpr std::string_view kPythonHas[] = {
     "--nan-color",    "--isolines",      "--scalar-opacity", "--isoline-color",
     "--light",        "--isoline-width", "--bar-unit"};
 
-/// Names the options and inputs that Python's render has no words for.
+/// Names the options and inputs that Python's render lacks.
 std::string without_words(const ShownPicture& shown) {
   const MeshSettings& s = shown.settings;
   std::string all;

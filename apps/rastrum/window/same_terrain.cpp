@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kRadians = std::numbers::pi / 180;
 
-/// Degrees that are made exactly `rad` of, where there are such.
+/// Degrees from which exactly `rad` is made, if there are any.
 std::optional<double> exact_degrees(double rad) {
   const double near = rad / kRadians;
   if (near * kRadians == rad) return near;
@@ -45,7 +45,7 @@ std::string hex(Rgba8 c) {
       .substr(0, 7);
 }
 
-/// The original program's field of view is its own.
+/// The original program has its own field of view.
 double fov_of(const ShownTerrain& t) {
   return t.look.classic ? t.look.fov_rad : t.pose.fov_rad;
 }
@@ -95,7 +95,7 @@ void say_light(Words& say, const ShownTerrain& t) {
     say("--sun-radius", number(t.light.sun_radius_deg));
 }
 
-/// Options of the ground that are said again as they were given.
+/// Options of the ground that are repeated as given.
 constexpr std::string_view kNumberOptions[] = {
     "--scalars",    "--cmap",  "--range", "--log",       "--symmetric", "--steps",
     "--categories", "--below", "--above", "--nan-color", "--bar",       "--bar-unit"};
@@ -118,7 +118,7 @@ void say_ground(Words& say, const ShownTerrain& t) {
   if (t.shown.ground.bounds && t.input.height) say("--bounds");
 }
 
-/// A comment that names what neither the command line nor Python can say.
+/// A comment about what neither the command line nor Python can express.
 std::string without_words(const ShownTerrain& t) {
   std::string all;
   const terrain::TerrainCamera& c = t.pose.camera;

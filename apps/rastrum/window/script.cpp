@@ -27,7 +27,7 @@ void check_key(const JsonFields& fields, const char* name, const std::string& ke
   fields.fail(name, "there is no key '" + key + "' here; known: " + known);
 }
 
-/// One object may hold several actions; they happen in the order below.
+/// One object may hold several actions, in the order below.
 void read_step(const JsonFields::Element& element, std::span<const KeyHelp> keys, Script& script) {
   JsonFields fields(*element.value, element.place);
   const double before = script.steps.empty() ? 0 : script.steps.back().time_s;
@@ -119,7 +119,7 @@ bool Replay::finished() const {
 }
 
 void Replay::perform(const Script::Step& step) {
-  // Each action has settled before the next, so that a screenshot shows what was asked for before.
+  // Each action settles before the next, so that a screenshot shows the earlier ones.
   if (const auto* event = std::get_if<Event>(&step.action)) return viewer_.handle(*event);
   if (const auto* options = std::get_if<Script::Options>(&step.action))
     viewer_.set_options(options->line);
@@ -142,7 +142,7 @@ void Replay::resize(int width, int height) {
 void Replay::step() {
   const double now = static_cast<double>(frame_) / script_.fps;
   if (path_s_) viewer_.subject().go_to(std::min(path_s_->first + now, path_s_->second));
-  // A step at 0.1 s and sixty frames a second belongs to frame 6, whatever 6 / 60.0 is.
+  // Rounding of frame times: a step at 0.1 s is frame 6 of sixty per second.
   const double due = now + 1e-9;
   while (!quit_ && next_ < script_.steps.size() && script_.steps[next_].time_s <= due)
     perform(script_.steps[next_++]);

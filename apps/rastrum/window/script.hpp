@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scripts: what a person would do, with times, replayed the same way each time (docs/window.md).
+// Timed actions of a person, replayed the same way each time (docs/window.md).
 #pragma once
 
 #include <cstddef>
@@ -37,20 +37,20 @@ struct Script {
 
   double fps = 60;
   std::vector<Step> steps;                    ///< times do not decrease
-  std::optional<std::filesystem::path> path;  ///< the file itself, where it has camera keys
+  std::optional<std::filesystem::path> path;  ///< the file itself, if it has camera keys
 };
 
-/// Throws Error naming the file, the step and, for a key that is not among `keys`, those that are.
+/// Throws Error naming the file, the step and, for an unknown key, `keys`.
 [[nodiscard]] Script read_script(const std::filesystem::path& file, std::span<const KeyHelp> keys);
 
-/// Replays a script on a viewer in even steps of time; each picture is full, whatever it costs, so
-/// that two replays give the same pictures.
+/// Replays a script in even steps of time with full pictures, so that two replays give the same
+/// pictures.
 class Replay {
  public:
-  /// Throws Error where the camera keys of the script do not fit what is shown.
+  /// Throws Error if the script's camera keys do not fit the subject.
   Replay(Script script, Viewer& viewer);
 
-  /// Does what is due, moves time on by a frame and draws. Times are steps / fps.
+  /// Performs what is due, moves time on by a frame and draws.
   void step();
   [[nodiscard]] bool finished() const;
   [[nodiscard]] bool quit() const { return quit_; }
@@ -64,7 +64,7 @@ class Replay {
 
   Script script_;
   Viewer& viewer_;
-  std::optional<std::pair<double, double>> path_s_;  ///< first and last second of the camera path
+  std::optional<std::pair<double, double>> path_s_;  ///< seconds of the camera path: first, last
   std::size_t frame_ = 0, next_ = 0;
   std::optional<std::pair<int, int>> size_;
   bool quit_ = false;

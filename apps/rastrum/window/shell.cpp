@@ -18,16 +18,16 @@
 namespace rastrum::cli::window {
 namespace {
 
-constexpr int kIdle_ms = 10;        ///< between looks at the events where nothing moves
-constexpr int kFrame_ms = 2;        ///< where something does
-constexpr double kLongest_s = 0.1;  ///< a step of motion, so that a pause is not a leap
-constexpr int kImguiFrames = 3;     ///< until ImGui has settled after an event
+constexpr int kIdle_ms = 10;        ///< between polls if nothing moves
+constexpr int kFrame_ms = 2;        ///< if something does
+constexpr double kLongest_s = 0.1;  ///< a step of motion, so that a pause is no leap
+constexpr int kImguiFrames = 3;     ///< that ImGui needs to settle after an event
 
 [[noreturn]] void fail(const char* what) {
   throw Error(Errc::no_device, std::string(what) + ": " + SDL_GetError());
 }
 
-/// Whether somebody may look at what this driver of SDL draws.
+/// Whether pictures of this SDL driver can be visible.
 bool is_visible(const std::string& driver) {
   return driver != "offscreen" && driver != "dummy" && driver != "evdev";
 }
@@ -39,13 +39,12 @@ class Screen {
     window_ = SDL_CreateWindow(title_of(what).c_str(), SDL_WINDOWPOS_UNDEFINED,
                                SDL_WINDOWPOS_UNDEFINED, width, height, SDL_WINDOW_RESIZABLE);
     if (window_ == nullptr) undo_and_fail("the window cannot be opened");
-    // The pictures are made by the CPU: a copy is all there is to do. SDL_RENDER_DRIVER chooses
-    // another one.
+    // The CPU makes the pictures, so this only copies. SDL_RENDER_DRIVER chooses another renderer.
     renderer_ = SDL_CreateRenderer(window_, -1, SDL_RENDERER_SOFTWARE);
     if (renderer_ == nullptr) undo_and_fail("the window cannot be drawn to");
     SDL_EventState(SDL_DROPFILE, SDL_ENABLE);
     ImGui::CreateContext();
-    ImGui::GetIO().IniFilename = nullptr;  // no file where the program happens to run
+    ImGui::GetIO().IniFilename = nullptr;  // no file in the current directory
     ImGui::StyleColorsDark();
     ImGui_ImplSDL2_InitForSDLRenderer(window_);
     fonts_.emplace(renderer_);
@@ -55,7 +54,6 @@ class Screen {
   Screen& operator=(const Screen&) = delete;
 
   [[nodiscard]] SDL_Window* window() { return window_; }
-  /// Shows in the window's title bar what the picture is.
   void set_title(const std::string& what) {
     const std::string title = title_of(what);
     if (title != SDL_GetWindowTitle(window_)) SDL_SetWindowTitle(window_, title.c_str());
@@ -125,7 +123,7 @@ class Screen {
 
 std::string key_name(const SDL_Keysym& key) {
   std::string name = lower(SDL_GetKeyName(key.sym));
-  // The plus sign is on the key of the equals sign, or has its own beside the numbers.
+  // Plus is on the key of the equals sign, or has its own beside the numbers.
   if (name == "keypad +" || name == "+") return "=";
   if (name == "keypad -") return "-";
   return name;
@@ -172,9 +170,9 @@ class Shell {
  private:
   using Clock = std::chrono::steady_clock;
 
-  /// Whether there was one that may change what is seen. Asks and sleeps: where SDL waits it wakes
-  /// itself by messages to the window over a connection of their own, and one that the X server
-  /// reads after the window is gone ends the program with an error.
+  /// Whether an event may change the picture. Polls and sleeps: if SDL waits it wakes itself by
+  /// messages to the window over its own connection, and one that the X server reads after the
+  /// window is gone ends the program with an error.
   bool wait_for_events(int timeout_ms) {
     SDL_Event event;
     bool any = false;
@@ -192,7 +190,7 @@ class Shell {
 
   void take(const SDL_Event& event) {
     ImGui_ImplSDL2_ProcessEvent(&event);
-    // SDL_GetModState() is of the newest event that SDL has read, which may be many after this one.
+    // SDL_GetModState() is of the newest event that SDL has read, perhaps many after this one.
     if (event.type == SDL_KEYDOWN || event.type == SDL_KEYUP) modifiers_ = event.key.keysym.mod;
     Event e;
     e.shift = (modifiers_ & KMOD_SHIFT) != 0;
@@ -220,7 +218,7 @@ class Shell {
         e.button = button_of(event.button.button);
         e.x = event.button.x;
         e.y = event.button.y;
-        // A press on the panel is the panel's; a release always ends a drag.
+        // A press on the panel belongs to it; a release always ends a drag.
         if (e.kind == Event::Kind::button_down && is_panels(event.button.x, event.button.y)) return;
         return send(e);
       case SDL_MOUSEMOTION:
@@ -228,7 +226,7 @@ class Shell {
         e.x = event.motion.x;
         e.y = event.motion.y;
         send(e);
-        // Where it rests counts, and ImGui learns of that too late.
+        // The resting place counts, and ImGui learns of it too late.
         if (!replay_ && panel_ && (list_ || area_.holds(event.motion.x, event.motion.y)))
           viewer_.point_nowhere();
         return;
@@ -242,8 +240,8 @@ class Shell {
     }
   }
 
-  /// ImGui says whose the mouse is only after a frame, and a press may come with the motion that
-  /// leads to it; what hangs out of the panel, such as a list, is under the mouse already.
+  /// ImGui tells only after a frame who has the mouse, and a press may come with the motion that
+  /// leads to it. Parts outside of the panel's area, such as a list, have the mouse already.
   [[nodiscard]] bool is_panels(int x, int y) const {
     return panel_ && (ImGui::GetIO().WantCaptureMouse || area_.holds(x, y));
   }
@@ -270,7 +268,7 @@ class Shell {
         SDL_SetClipboardText(text.c_str());
       return;
     }
-    // While a text is edited keys are text; their releases still count.
+    // While a text is edited keys are text, but their releases count.
     if (down && ImGui::GetIO().WantTextInput) return;
     if (down && e.key == "tab") {
       panel_ = !panel_;
@@ -314,10 +312,10 @@ class Shell {
   Viewer viewer_;
   const Controls& controls_;
   std::optional<Replay> replay_;
-  unsigned modifiers_ = 0;  ///< held at the event that is being taken
+  unsigned modifiers_ = 0;  ///< at the event being taken
   bool panel_ = true;
-  Area area_;          ///< of the panel, as it was drawn last
-  bool list_ = false;  ///< one of the panel is open
+  Area area_;          ///< of the panel, when last drawn
+  bool list_ = false;  ///< of the panel is open
   bool quit_ = false;
 };
 
@@ -325,7 +323,7 @@ class Shell {
 
 Display::Display() {
   SDL_SetHint(SDL_HINT_VIDEO_X11_NET_WM_BYPASS_COMPOSITOR, "0");
-  // A software renderer would go through OpenGL to the screen, which users need not have.
+  // A software renderer would go through OpenGL to the screen, which users may lack.
   SDL_SetHint(SDL_HINT_FRAMEBUFFER_ACCELERATION, "0");
   SDL_SetHint(SDL_HINT_NO_SIGNAL_HANDLERS, "1");  // Ctrl-C in the terminal ends the program
   const char* const asked = SDL_getenv("SDL_VIDEODRIVER");

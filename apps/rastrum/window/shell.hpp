@@ -15,9 +15,9 @@ struct ShellOptions {
   std::optional<Script> script;
 };
 
-/// SDL's connection to a display, for as long as this lives. Throws Error{no_device} where nobody
-/// would see a window: SDL would otherwise take a driver that draws nowhere, and wait for keys that
-/// nobody can press. A script that asks for such a driver by SDL_VIDEODRIVER gets it.
+/// SDL's connection to a display. Throws Error{no_device} if a window would not be visible: SDL
+/// would take a driver that draws nowhere, and wait for keys. A script that asks for such a driver
+/// by SDL_VIDEODRIVER gets it.
 class Display {
  public:
   Display();
@@ -26,11 +26,11 @@ class Display {
   Display& operator=(const Display&) = delete;
 };
 
-/// Draws the controls of a subject with ImGui; called inside of the panel's window.
+/// Draws a subject's controls with ImGui, inside of the panel's window.
 using Controls = std::function<void()>;
 
-/// Shows the window until it is closed. Requires a Display. Throws Error{no_device} where the
-/// window cannot be opened.
+/// Shows the window until it is closed. Requires a Display. Throws Error{no_device} if the window
+/// cannot be opened.
 void run_shell(std::unique_ptr<Subject> subject, const ViewerOptions& viewer,
                const ShellOptions& options, const Controls& controls);
 

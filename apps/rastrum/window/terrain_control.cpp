@@ -8,7 +8,7 @@
 namespace rastrum::cli::window {
 namespace {
 
-// A second of each key. The original program moves some 90 cells a second, too.
+// Per second of a held key. The original program also moves some 90 cells per second.
 constexpr double kMove = 90;                     // cells
 constexpr double kTurn = 1;                      // rad
 constexpr double kHorizon = 0.5;                 // heights of the window
@@ -56,7 +56,7 @@ void TerrainControl::resize(int, int height) {
   height_ = height;
 }
 
-/// The view follows the pointer: the horizon in pixels, the angle about as fast.
+/// The view follows the pointer: the horizon exactly, the angle about as fast.
 void TerrainControl::drag(double dx_px, double dy_px) {
   pose_.camera.angle_rad += dx_px * pose_.fov_rad / std::max(height_ * 1.5, 1.0);
   pose_.camera.horizon_px += dy_px;
@@ -79,7 +79,7 @@ void TerrainControl::advance(double dt_s) {
   c.horizon_px += way("q", "e") * kHorizon * height_ * t;
   c.altitude += way("r", "f") * kClimb * t;
   c.roll_rad += way("left", "right") * kRoll * t;
-  // Values that a file or a person gave stay, also beyond what keys reach, until a key is held.
+  // Values from a file or a person may exceed the range of keys, until a key is held.
   if (const double w = way("up", "down"); w != 0)
     pose_.distance =
         std::clamp(pose_.distance * std::pow(kDistance, w * t), kLeastDistance, kMostDistance);

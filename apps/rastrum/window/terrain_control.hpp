@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The camera and the sun of the terrain viewer as a state machine, with the keys of paper 3's
-// program; unlike there, speeds are per second, not per frame.
+// The camera and the sun of the terrain viewer, with the keys of paper 3's program. Speeds are per
+// second, not per frame.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@
 
 namespace rastrum::cli::window {
 
-/// All that keys change by and by.
+/// Everything that held keys change.
 struct TerrainPose {
   terrain::TerrainCamera camera;
   double distance = 800;  ///< cells
@@ -24,7 +24,7 @@ class TerrainControl final : public CameraControl {
  public:
   explicit TerrainControl(const TerrainPose& home);
 
-  /// The window's height in pixels; the horizon stays at the same part of it.
+  /// The horizon keeps its share of the height.
   void resize(int width, int height);
   void advance(double dt_s);
   void go_home() override { place(home_); }
@@ -40,7 +40,7 @@ class TerrainControl final : public CameraControl {
   void wheel(double notches) override;
 
   TerrainPose home_, pose_;
-  double height_ = 0;  ///< px; 0: not known yet
+  double height_ = 0;  ///< px; 0: unknown
 };
 
 }  // namespace rastrum::cli::window

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The controls of a terrain: each edits a copy, which is set where one has changed.
+// The controls of a terrain. Each edits a copy, which is set if it has changed.
 #include <imgui.h>
 
 #include <string>
@@ -22,7 +22,7 @@ bool slide(const char* label, double& value, float least, float most, const char
   return true;
 }
 
-/// Lights in the sun's place, and what is drawn over the ground.
+/// Lights instead of the sun, and annotations.
 bool edit_ground(TerrainSubject::Settings& s) {
   bool changed =
       choose_name_or_none("lights", "as given", {"sun", "headlight", "studio"}, s.lights);

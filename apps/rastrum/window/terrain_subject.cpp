@@ -26,7 +26,7 @@ constexpr KeyHelp kTerrainSubjectKeys[] = {
     {"c", "next kind of shadows"}, {"g", "fog"},       {"v", "fast, or paper 3's scans"},
     {"t", "next tiling"}};
 
-/// A lit terrain depends on these beside its map, its numbers and the lights that were given.
+/// A lit terrain depends on these beside its map, its numbers and the given lights.
 auto light_key(const terrain::Light& l, const TerrainOptions& o, const std::string& lights,
                const ToneMapping& tone) {
   return std::make_tuple(l.sun.azimuth_deg, l.sun.elevation_deg, l.shadows, l.hill_shading,
@@ -47,10 +47,10 @@ std::string name_of(const TerrainInput& input) {
 
 }  // namespace
 
-/// Keeps from frame to frame the map, the light on it, and the renderer.
+/// Keeps the map, its light and the renderer between frames.
 class TerrainSubject::Stage {
  public:
-  /// Reads the map unless it is the one that is there.
+  /// Reads the map unless it is the current one.
   LoadedTerrain& map(const TerrainInput& input) {
     const std::string name = name_of(input);
     if (!source_ || name != name_) {
@@ -66,7 +66,7 @@ class TerrainSubject::Stage {
     source_ = std::move(source);
     name_ = name_of(input);
   }
-  /// The map that is there, whose heights are numbers where `s` says so and it has no colours.
+  /// The current map. Its heights are numbers if `s` says so and it has no colours.
   LitGround& lit(const Settings& s, const terrain::Light& light, const TerrainLook& o,
                  const TerrainInput& input, const terrain::TerrainCamera& camera) {
     const FrameOptions frame = s.frame();
@@ -208,8 +208,8 @@ std::function<Drawn()> TerrainSubject::draw(int width, int height, bool /*glance
   } else {
     o.fov_rad = pose.fov_rad;
   }
-  // Fewer pixels see the same: what is given in pixels shrinks with them. The original program's
-  // scale is fixed, so it is always drawn in full.
+  // Fewer pixels show the same, so values in pixels shrink with them. The original program's scale
+  // is fixed, so it is always drawn in full.
   if (o.classic) {
     height = height_;
     width = width_;
@@ -219,7 +219,7 @@ std::function<Drawn()> TerrainSubject::draw(int width, int height, bool /*glance
   o.scale_px *= shrunk;
   o.width = width;
   o.height = height;
-  // Far ground in fog becomes what is behind it.
+  // Far ground in fog takes the colour behind it.
   if (frame.environment_behind) o.sky = horizon_color(frame.lights, frame.tone, camera);
   return [o, light, camera, frame, settings = settings_, input = maps_[map_],
           stage = stage_]() -> Drawn {

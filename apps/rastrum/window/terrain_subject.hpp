@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A terrain in the window: its maps, options, light and camera.
 #pragma once
 
 #include <cstdint>
@@ -17,15 +16,15 @@
 
 namespace rastrum::cli::window {
 
-/// Settings that the panel changes, beside the pose.
+/// Settings of the panel, beside the pose.
 struct TerrainSettings {
   TerrainLook options;
   terrain::Light light;
   bool sky_dims = true;
   GroundShown shown{};
-  /// sun, headlight or studio; empty: as the command line had.
+  /// sun, headlight or studio; empty: as on the command line.
   std::string lights{};
-  std::uint64_t said = 0;  ///< changes where `shown` is another one's words
+  std::uint64_t said = 0;  ///< changes with the words of `shown`
 
   /// `shown.frame` with these lights; without any the sun shines.
   [[nodiscard]] FrameOptions frame() const;
@@ -33,8 +32,8 @@ struct TerrainSettings {
 
 class TerrainSubject final : public KeyedSubject<TerrainControl, TerrainSettings, TerrainPathKey> {
  public:
-  /// `maps`: what F1 goes through, at least one; the first is read here. `arguments.input` is not
-  /// used. Throws Error, UsageError.
+  /// F1 goes through `maps`, at least one; the first is read here. `arguments.input` is not used.
+  /// Throws Error, UsageError.
   TerrainSubject(const TerrainSceneArguments& arguments, const GroundShown& shown,
                  std::vector<TerrainInput> maps);
   ~TerrainSubject() override;
@@ -43,7 +42,7 @@ class TerrainSubject final : public KeyedSubject<TerrainControl, TerrainSettings
 
   void handle(const Event& event) override;
   void advance(double dt_s) override;
-  /// Where a person has put it, at angles that a command line can say.
+  /// Places the camera at angles that a command line can express.
   void place(const TerrainPose& pose);
   [[nodiscard]] Texts same_picture(int width, int height, const std::string& png) const override;
   [[nodiscard]] std::function<Drawn()> draw(int width, int height, bool glance) override;

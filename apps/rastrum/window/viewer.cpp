@@ -18,8 +18,8 @@ namespace {
 
 constexpr double kRest_s = 0.15;       ///< without change, before the full picture is drawn
 constexpr std::size_t kHistory = 120;  ///< frame times that are kept
-constexpr double kHover_s = 0.2;       ///< that a pointer rests before what is there is looked up
-constexpr double kClick_px = 3;        ///< that a hand may shake between press and release
+constexpr double kHover_s = 0.2;       ///< of a resting pointer, before its pixel is looked up
+constexpr double kClick_px = 3;        ///< of shaking between press and release
 
 constexpr KeyHelp kViewerKeys[] = {{"p", "screenshot, with its camera as a path file"},
                                    {"k", "add the camera to a path that render --path draws"},
@@ -142,8 +142,7 @@ bool Viewer::wants_look() const {
   return has_pointer_news() && rested_s_ >= kHover_s && shown_.is_full() && shown_.same_view(now());
 }
 
-/// Cheap beside a frame, but it goes over the whole scene: it is given up for whatever is to be
-/// drawn.
+/// Cheap beside a frame, but it reads the whole scene. Any picture to draw stops it.
 void Viewer::look() {
   looking_ = Look{now(), pointer_->first, pointer_->second};
   auto job = subject_->pick(looking_->x, looking_->y, options_.width, options_.height);
@@ -164,7 +163,7 @@ void Viewer::look() {
           return [this] { looking_.reset(); };
         }
       },
-      // The picture's own errors are said; a second one would hide them.
+      // The picture's own errors are shown; a second one would hide them.
       [this](const std::string&) { looked_ = std::exchange(looking_, std::nullopt); });
 }
 
@@ -249,7 +248,7 @@ std::optional<Viewer::State> Viewer::next() const {
   State wanted = now();
   if (!wanted.same_view(shown_)) {
     if (!options_.adaptive) return wanted;
-    // Nothing drawn yet: a small one, which also tells how fast this scene is.
+    // With nothing drawn yet, a small one, which also measures this scene.
     wanted.step = resolution_.expected_ms(0) == 0 ? kScales.size() - 1 : resolution_.moving_step();
     wanted.glance = subject_->has_glances();
     return wanted;
@@ -299,7 +298,7 @@ void Viewer::draw(const State& state) {
   refining_.reset();
   if (state.same_view(shown_)) refining_ = state;
   drawing_ = {};
-  // The time of a whole picture says nothing about the glances of a moving view.
+  // A whole picture's time says nothing about the glances of a moving view.
   const bool counts = state.glance || !subject_->has_glances();
   submit(
       [this, drawing = std::move(drawing), state, counts,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The session of a window without the window: which picture is drawn when and at what resolution,
-// screenshots, files that are dropped, and the errors of all that as text.
+// screenshots, dropped files, and errors as text.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ namespace rastrum::cli::window {
 struct ViewerOptions {
   int width = 1280, height = 720;
   double target_ms = 33;  ///< of a frame while something moves
-  /// Whether a moving picture may have fewer pixels; without, every picture is full.
+  /// Whether moving pictures may have fewer pixels.
   bool adaptive = true;
   NumberedName screenshots{"--screenshots", "rastrum_%04d.png"};
 };
@@ -32,49 +32,47 @@ struct ViewerOptions {
 class Viewer {
  public:
   Viewer(std::unique_ptr<Subject> subject, ViewerOptions options);
-  /// Gives up the picture that is being drawn.
+  /// Stops the picture that is being drawn.
   ~Viewer();
 
   void handle(const Event& event);
   void resize(int width, int height);
-  /// Opens a file in place of what is shown.
+  /// Replaces the subject's file.
   void open(const std::filesystem::path& file);
-  /// Writes the picture once it is full and still: a PNG and, beside it, a .json with the camera.
+  /// Writes a PNG and a .json with the camera once the picture is full and still.
   void screenshot(const std::filesystem::path& file);
-  /// Says in the title what lies at a pixel of the window.
+  /// The title then describes a pixel of the window.
   void pick(int x, int y);
-  /// The pointer is not over the picture any more; a move brings it back.
+  /// For a pointer that has left the picture; a move brings it back.
   void point_nowhere() { pointer_.reset(); }
-  /// Returns what lies under the pointer, once it and the whole picture rest; null: not known, or
+  /// Describes what lies under the pointer, once it and the whole picture rest; null: unknown, or
   /// nothing.
   [[nodiscard]] const Picked* hovered() const;
-  /// The pixel of the window where the pointer is over the picture.
+  /// The pixel of the window under the pointer, if that is over the picture.
   [[nodiscard]] std::optional<std::pair<int, int>> pointer() const { return pointer_; }
-  /// Returns the text that draws the picture that is seen: .sh or .py (Subject::same_picture). Says
-  /// that it was copied; empty where there is no such text.
+  /// Returns the text that draws the visible picture: .sh or .py (Subject::same_picture). Reports
+  /// the copy; empty if there is no such text.
   [[nodiscard]] std::string copy(const std::string& ending);
-  /// As the option line of a script; what is wrong becomes the message.
+  /// As the option line of a script; an error becomes the message.
   void set_options(const std::string& options);
   /// `dt_s`: seconds since the last call.
   void advance(double dt_s);
-  /// Takes what is finished and begins what is next. True where a new picture or message is there.
+  /// Takes finished work and begins the next. Returns whether a picture or message is new.
   bool update();
-  /// Updates until the full picture is there and everything asked for is done.
+  /// Updates until the full picture and everything asked for is done.
   void settle();
 
   [[nodiscard]] Subject& subject() { return *subject_; }
-  /// Says what is shown, and what was clicked on.
+  /// Names the subject, and what was clicked on.
   [[nodiscard]] std::string title() const;
-  /// The newest picture, or null before the first; `is_full`: all its pixels are there, and not of
-  /// a glance.
+  /// The newest picture, or null before the first; `is_full`: it has all pixels and is no glance.
   [[nodiscard]] const Drawn* picture() const { return picture_.get(); }
   [[nodiscard]] bool is_full() const { return shown_.is_full(); }
   [[nodiscard]] std::uint64_t serial() const { return serial_; }
   [[nodiscard]] const std::vector<float>& history_ms() const { return history_ms_; }
-  /// Something to do or to wait for: update() wants to be called soon.
+  /// Whether update() should be called soon.
   [[nodiscard]] bool busy() const;
-  /// Why there is no picture of what is wanted, or else what went wrong with the last file or
-  /// option.
+  /// Why the wanted picture is missing, else the last error of a file or an option.
   [[nodiscard]] const std::string& error() const {
     return draw_error_.empty() ? error_ : draw_error_;
   }
@@ -82,7 +80,7 @@ class Viewer {
   void set_adaptive(bool adaptive) { options_.adaptive = adaptive; }
   [[nodiscard]] const ViewerOptions& options() const { return options_; }
   void set_target(double ms);
-  /// Whether what lies under a resting pointer is looked up.
+  /// Whether the pixel under a resting pointer is looked up.
   void set_hovers(bool hovers) { hovers_ = hovers; }
   [[nodiscard]] bool hovers() const { return hovers_; }
 
@@ -101,10 +99,10 @@ class Viewer {
   };
   [[nodiscard]] State now() const;
   [[nodiscard]] bool resting() const;
-  /// Returns what to draw next; none: nothing.
+  /// The picture to draw next; may be none.
   [[nodiscard]] std::optional<State> next() const;
   void draw(const State& state);
-  /// Where the click began that `event` ends: a press and a release of the left button in one
+  /// The begin of the click that `event` ends: a press and a release of the left button in one
   /// place.
   [[nodiscard]] std::optional<std::pair<double, double>> clicked(const Event& event);
   /// A pixel of a picture, and what is there.
@@ -113,16 +111,15 @@ class Viewer {
     int x = 0, y = 0;
     Picked picked{};
   };
-  /// Whether it is of the pixel under the pointer as it is to be seen now.
+  /// Whether it describes the pixel under the pointer in the present view.
   [[nodiscard]] bool is_under_pointer(const Look& look) const;
-  /// Whether the pixel under the pointer has not been looked at.
+  /// Whether the pixel under the pointer has not been looked up.
   [[nodiscard]] bool has_pointer_news() const;
-  /// Whether to do so now.
   [[nodiscard]] bool wants_look() const;
   void look();
   void follow_pointer(const Event& event);
   void write_screenshot(const std::filesystem::path& file);
-  /// Runs `job` on the worker; what it throws becomes the error.
+  /// Runs `job` on the worker; its exception becomes the error.
   void submit(Worker::Job job, std::function<void(const std::string& what)> failed);
   [[nodiscard]] std::filesystem::path free_name() const;
   void record();
@@ -131,11 +128,11 @@ class Viewer {
   ViewerOptions options_;
   Resolution resolution_;
   State shown_;
-  /// Being drawn: a finer picture of what is shown, given up when something else is wanted. Every
-  /// other picture is finished, so that there is one from time to time whatever moves.
+  /// A finer picture being drawn of the same view, which stops for anything else. Every other
+  /// picture is finished, so that one appears from time to time whatever moves.
   std::optional<State> refining_;
   std::stop_source drawing_;
-  bool failed_ = false;  ///< what shown_ names could not be drawn
+  bool failed_ = false;  ///< shown_ could not be drawn
   std::uint64_t seen_version_ = 0;
   double still_s_ = 0;
   std::shared_ptr<const Drawn> picture_;
@@ -144,14 +141,14 @@ class Viewer {
   std::string draw_error_, error_, notice_, picked_;
   std::vector<std::filesystem::path> screenshots_, opens_;
   std::optional<std::pair<int, int>> pick_;         ///< asked for; the newest counts
-  std::optional<std::pair<double, double>> press_;  ///< of a click that may come
+  std::optional<std::pair<double, double>> press_;  ///< of a possible click
   bool hovers_ = true, pressed_ = false;
-  std::optional<std::pair<int, int>> pointer_;  ///< where it is over the picture
+  std::optional<std::pair<int, int>> pointer_;  ///< if over the picture
   double rested_s_ = 0;
   std::optional<Look> looking_, looked_;  ///< under way; the newest answer
   std::stop_source look_stop_;
   std::filesystem::path recording_;
-  Worker worker_;  ///< last: its thread uses what is above
+  Worker worker_;  ///< last: its thread uses the members above
 };
 
 }  // namespace rastrum::cli::window

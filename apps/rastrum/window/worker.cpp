@@ -25,7 +25,7 @@ void Worker::run() {
       job = std::exchange(job_, nullptr);
     }
     Done done = job();
-    job = nullptr;  // what it held goes before the window learns of the end
+    job = nullptr;  // frees its data before the window learns of the end
     {
       const std::lock_guard lock(mutex_);
       done_ = std::move(done);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One thread beside the window's: frames are drawn and files are read there, so that the window
-// answers meanwhile.
+// A thread beside the window's that draws frames and reads files, so that the window stays
+// responsive.
 #pragma once
 
 #include <condition_variable>
@@ -12,12 +12,12 @@ namespace rastrum::cli::window {
 
 class Worker {
  public:
-  /// The rest of a job, to be done on the window's thread.
+  /// The rest of a job, for the window's thread.
   using Done = std::function<void()>;
   using Job = std::function<Done()>;
 
   Worker() : thread_([this] { run(); }) {}
-  /// Waits for a job that runs, and drops what it leaves.
+  /// Waits for a running job, and drops its rest.
   ~Worker();
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
@@ -26,9 +26,9 @@ class Worker {
   [[nodiscard]] bool busy() const { return busy_; }
   /// Requires !busy(). `job` must not throw.
   void submit(Job job);
-  /// Does what an ended job has left; says whether there was one.
+  /// Does the rest of an ended job; returns whether there was one.
   bool poll();
-  /// Polls once the job that runs has ended; nothing where none runs.
+  /// Waits for a running job, then polls.
   void wait();
 
  private:
@@ -40,7 +40,7 @@ class Worker {
   Job job_;
   Done done_;
   bool stop_ = false;
-  std::thread thread_;  ///< last: it uses all of the above
+  std::thread thread_;  ///< last: it uses the members above
 };
 
 }  // namespace rastrum::cli::window

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The original program bit for bit (classic.cpp) on a device: float64 positions that accumulate
-// along a slice. A thread a slice walks over all columns first and keeps where the teams of
-// fast.cuh begin; a sample of a team adds up what is left, fewer than kTeamColumns steps.
-// Work O(columns · slices), span O(columns + that of fast.cuh). Takes 16 bytes a team and slice.
+// The original program bit for bit (classic.cpp) on a device. One thread per slice first walks over
+// all columns and stores where the teams of fast.cuh begin; a sample of a team adds the rest, fewer
+// than kTeamColumns steps. Work O(columns · slices), span O(columns + that of fast.cuh). Takes 16
+// bytes per team and slice.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@
 
 namespace rastrum::terrain {
 
-/// A ClassicLine, and the row that nothing from there on rises above.
+/// `lowest_row`: nothing from there on rises above it.
 struct ClassicSlice {
   ClassicLine line;
   double lowest_row;
@@ -65,7 +65,7 @@ struct ClassicWalk {
     const float ground = heights(static_cast<int>(cell_at(at.x, map.width, tiling)),
                                  static_cast<int>(cell_at(at.y, map.height, tiling)));
     const double row = (altitude - static_cast<double>(ground)) * lines[k].line.rows + horizon;
-    if (!(row < rows)) return kNoRow;  // also NaN
+    if (!(row < rows)) return kNoRow;  // also if NaN
     return row > 0 ? static_cast<std::int32_t>(row) : 0;
   }
   [[nodiscard]] RASTRUM_HD Rgba8 color(std::size_t column, std::size_t k) const {
@@ -108,7 +108,7 @@ struct ClassicWalk {
   }
 };
 
-/// `targets` lie on the device. The camera was lifted before. Waits.
+/// `targets` lie on the device. The camera is lifted already. Waits.
 [[nodiscard]] inline Counts draw_classic(parallel::Cuda& exec, const DeviceMap& map,
                                          const TerrainOptions& options, const TerrainCamera& camera,
                                          const TerrainTargets& targets) {

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Calls the terrain functions of the library of device code.
 #include <rastrum/terrain/cuda/device.hpp>
 
 #include <rastrum/parallel/cuda/library.hpp>

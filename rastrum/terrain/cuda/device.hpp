@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The functions of a CUDA device that the terrain's host code calls, without a header of CUDA.
-// renderer.cu and shadows.cu define them, in the library of device code
-// (parallel/cuda/library.hpp).
+// The CUDA functions that the terrain's host code calls, without a CUDA header, from the library of
+// device code (parallel/cuda/library.hpp).
 #pragma once
 
 #include <cstdint>
@@ -18,20 +17,19 @@
 
 namespace rastrum::terrain {
 
-/// Draws on the current device; keeps the map that was drawn last there, and its memory.
+/// Keeps the last map on the device, and its memory.
 class DeviceRenderer {
  public:
   virtual ~DeviceRenderer() = default;
-  /// Fills `targets`, memory of the host, with a frame of a terrain for which why_not_on_device is
-  /// empty. With `roll` (may be null), the picture is turned out of the upright one that options
-  /// and camera describe. Calls `lap` with the name of each stage that is done. Throws
-  /// Error{out_of_memory}, Error{no_device}.
+  /// Fills `targets`, in host memory, with a frame of a terrain for which why_not_on_device is
+  /// empty. `roll` (may be null) rotates the upright picture that options and camera describe.
+  /// Calls `lap` with each finished stage. Throws Error{out_of_memory}, Error{no_device}.
   Counts draw(const Terrain& terrain, const TerrainOptions& options, const TerrainCamera& camera,
               const Roll* roll, const TerrainTargets& targets,
               const std::function<void(const char* stage)>& lap) {
     return draw(terrain, options, camera, roll, targets, lap, StopScope::current());
   }
-  /// Bytes that it holds of the device's memory.
+  /// Device memory that it holds.
   [[nodiscard]] virtual std::uint64_t bytes() const = 0;
 
  private:
@@ -41,7 +39,7 @@ class DeviceRenderer {
                       const std::function<void(const char* stage)>& lap, const StopToken* stop) = 0;
 };
 
-/// The terrain functions of the library of device code. `stop` as in DeviceRenderer.
+/// `stop` as in DeviceRenderer.
 struct CudaTerrain {
   std::unique_ptr<DeviceRenderer> (*make_renderer)();
   Image<std::uint8_t> (*sharp_shadows)(ImageView<const float>, const Sun&, Tiling,
@@ -53,24 +51,22 @@ struct CudaTerrain {
 };
 extern const CudaTerrain kCudaTerrain;  ///< in that library
 struct MethodOnDevice;                  // method.cuh
-/// Also there, in renderer.cu. `words`, which may be null, must outlive the renderer.
+/// In renderer.cu. `words` may be null; else it must outlive the renderer.
 [[nodiscard]] std::unique_ptr<DeviceRenderer> make_cuda_renderer(const MethodOnDevice* words);
 
 /// Throws Error{no_device}.
 [[nodiscard]] std::unique_ptr<DeviceRenderer> make_device_renderer();
 
-/// Why a device does not draw such a terrain; empty if it does: a map, or a named function in its
-/// light.
+/// Empty if a device draws such a terrain: a map, or a named function under its light.
 [[nodiscard]] std::string why_not_on_device(const Terrain& terrain, const TerrainOptions& options);
 
-/// The most bytes of a device's memory that draw() takes for such frames, rolled or not. An added
-/// method needs more on top.
+/// The most device memory that draw() takes, rolled or not. An added method needs more.
 [[nodiscard]] std::uint64_t device_bytes(const Terrain& terrain, const TerrainOptions& options);
 
-/// sharp_shadows and hidden_samples of a map on the host; the same bits. Throw Error{no_device}.
+/// For a map on the host; the same bits. Throws Error{no_device}.
 [[nodiscard]] Image<std::uint8_t> sharp_shadows_on_device(ImageView<const float> heights,
                                                           const Sun& sun, Tiling tiling);
-/// soft_light with these points of the sun's disc, fewer than 256; the map is copied once.
+/// soft_light with these points of the sun's disc, fewer than 256.
 [[nodiscard]] Image<std::uint8_t> light_of_suns_on_device(ImageView<const float> heights,
                                                           std::span<const Sun> suns, Tiling tiling);
 [[nodiscard]] Image<std::uint16_t> hidden_samples_on_device(ImageView<const float> heights,

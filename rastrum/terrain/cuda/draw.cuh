@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A frame of a terrain on a CUDA device, for those whose map and picture lie there: nothing is
-// copied but the directions of the columns and the distances of the slices, some 20 KiB.
-// TerrainRenderer with Device::cuda calls the same (renderer.cu).
+// A frame of a terrain on a CUDA device for callers whose map and picture lie there. Only the
+// columns' directions and the slices' distances are copied, some 20 KiB. TerrainRenderer calls the
+// same (renderer.cu).
 #pragma once
 
 #include <rastrum/terrain/cuda/classic.cuh>
@@ -12,12 +12,11 @@
 
 namespace rastrum::terrain {
 
-/// Fills `targets`, memory of the device of the options' size, with the bits of TerrainRenderer on
-/// any other device. The camera is drawn where it stands: without roll, and not lifted above the
-/// ground. Options and camera are checked. `map` has the pyramid where the filter is mip. `words`
-/// draws frames with TerrainOptions::added, and may be null for others. Waits. Cost: as
-/// TerrainRenderer::render. Throws Error{invalid_argument}, Error{out_of_memory}, Error{no_device},
-/// Error{unsupported}.
+/// Fills `targets`, device memory of the options' size, with the bits of TerrainRenderer on any
+/// device. Draws the camera where it stands: without roll, and not lifted above the ground.
+/// Requires checked options and camera, and the pyramid if the filter is mip. `words` draws frames
+/// with TerrainOptions::added, and may be null for others. Waits. Cost: as TerrainRenderer::render.
+/// Throws Error{invalid_argument}, Error{out_of_memory}, Error{no_device}, Error{unsupported}.
 [[nodiscard]] inline Counts draw_frame(parallel::Cuda& exec, const DeviceMap& map,
                                        const TerrainOptions& options, const TerrainCamera& camera,
                                        const TerrainTargets& targets,

@@ -1,24 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The fast path for a GPU, without paper 3's scans (its section 5.5 asks for that) and without the
-// marks of the CPU's (fast.cpp), which are a second pass over the picture. A team takes a block of
-// kTeamColumns neighbouring columns and walks their slices near to far, kTeamSlices at a time:
+// CPU's marks (fast.cpp), which need a second pass over the picture. A team walks the slices of
+// kTeamColumns neighbouring columns near to far, kTeamSlices at a time:
 //
-// 1. All members find the first rows of the samples, neighbours those of neighbouring columns,
-//    whose cells lie side by side.
-// 2. A member a column turns them into running minima, in shared memory.
-// 3. All members find the colours of the samples that are visible.
-// 4. All members write the pixels that these samples uncovered, row by row, neighbours side by
-//    side: the sample of a pixel is the first whose running minimum is not below it, which a binary
-//    search finds. So the `fill` scan is a search in what the running minimum left, each pixel is
+// 1. All members find the first rows of the samples; neighbours take neighbouring columns.
+// 2. One member per column turns them into running minima, in shared memory.
+// 3. All members find the colours of the visible samples.
+// 4. All members write the pixels that these samples uncovered, row by row. A pixel's sample is the
+//    first whose running minimum is not below it, which a binary search finds. So each pixel is
 //    written once, and nothing is read back.
 //
-// Before that, each member finds out for one group of slices whether even the highest cells under
-// it would stay hidden (ceiling.hpp; `classic` has its own bound); all leave such groups out.
+// Before that, each member tests for one group of slices whether even the highest cells under it
+// would stay hidden (ceiling.hpp; `classic` has its own bound). All skip such groups.
 //
-// The template parameter `Walk` says where samples lie: PlanarWalk here, FunctionWalk in
-// functions.cuh, ClassicWalk in classic.cuh. Work O(columns · slices), span O(slices / kTeamSlices
-// · (kTeamSlices + rows)). Sizes are not measured: at 1,920 columns there are as many teams as an
-// A100 or H100 has multiprocessors.
+// `Walk` says where samples lie: PlanarWalk here, FunctionWalk in functions.cuh, ClassicWalk in
+// classic.cuh. Work O(columns · slices), span O(slices / kTeamSlices · (kTeamSlices + rows)). The
+// sizes are not measured: 1,920 columns give about as many teams as an A100 or H100 has
+// multiprocessors.
 #pragma once
 
 #include <bit>
@@ -36,11 +34,10 @@ namespace rastrum::terrain {
 inline constexpr std::size_t kTeamColumns = 16, kTeamSlices = 16, kTeamGroups = 256;
 inline constexpr int kTeamThreads = 256;
 
-/// A column that is drawn from the returned row on, or from one above it, shows nothing below
-/// `row`.
+/// A column drawn from the returned row on, or from above it, shows nothing below `row`.
 template <class Real>
 [[nodiscard]] RASTRUM_HD std::int32_t bound_of_row(Real row, std::int32_t height) {
-  if (!(row > 0)) return 0;  // also NaN, which bounds nothing
+  if (!(row > 0)) return 0;  // also if NaN, which bounds nothing
   return row < static_cast<Real>(height) ? static_cast<std::int32_t>(row) : kNoRow;
 }
 
@@ -61,17 +58,16 @@ struct SamplesWalk {
     return samples.color(column, samples.setup.slices[k]);
   }
   [[nodiscard]] RASTRUM_HD float depth(std::size_t k) const { return samples.setup.slices[k].z; }
-  /// Whether no column shows anything from slice k on, if all are drawn from row `deepest` on.
+  /// Whether no column shows anything from slice k on if all are drawn from row `deepest` on.
   [[nodiscard]] RASTRUM_HD bool ends(std::int32_t deepest, std::size_t k) const {
     return static_cast<float>(deepest) <= samples.setup.slices[k].lowest_row;
   }
 };
 
-/// The samples of a map.
 struct PlanarWalk : SamplesWalk<MapSamples> {
   CeilingView ceiling;
 
-  /// A row that no sample of columns [first, first + n) on slices [begin, end) rises above.
+  /// No sample of columns [first, first + n) on slices [begin, end) rises above this row.
   [[nodiscard]] RASTRUM_HD std::int32_t lowest_row(std::size_t first, std::size_t n,
                                                    std::size_t begin, std::size_t end) const {
     const float row = Fan(samples.setup, first, n)
@@ -83,7 +79,7 @@ struct PlanarWalk : SamplesWalk<MapSamples> {
 
 namespace cuda_detail {
 
-/// The shared memory of a team.
+/// In shared memory.
 struct TeamColumns {
   std::int32_t row[kTeamSlices][kTeamColumns];              ///< running minima
   std::uint32_t color[kTeamSlices][kTeamColumns];           ///< bits of an Rgba8
@@ -140,7 +136,7 @@ struct WalkColumns {
     return most;
   }
 
-  /// Bounds the groups of slices from k on, each by one member.
+  /// One group of slices per member, from k on.
   template <class Team>
   RASTRUM_HD void find_bounds(std::size_t first, std::size_t n, std::size_t k, TeamColumns& shared,
                               const Team& team) const {
@@ -174,7 +170,6 @@ struct WalkColumns {
     team.sync();
   }
 
-  /// Turns a column's rows into their running minimum.
   RASTRUM_HD static void hide(std::size_t c, TeamColumns& shared) {
     std::int32_t hidden = shared.hidden[c];
     shared.before[c] = hidden;
@@ -197,7 +192,7 @@ struct WalkColumns {
       const std::size_t c = i % kTeamColumns;
       const std::int32_t y = top + static_cast<std::int32_t>(i / kTeamColumns);
       if (c >= n || y < shared.hidden[c] || y >= shared.before[c]) continue;
-      // Finds the first of these minima that is not below y; there is one.
+      // The first of these minima that is not below y; there is one.
       std::size_t low = 0, high = kTeamSlices - 1;
       while (low < high) {
         const std::size_t middle = (low + high) / 2;
@@ -213,7 +208,6 @@ struct WalkColumns {
     }
   }
 
-  /// Fills in the sky and the counts.
   template <class Team>
   RASTRUM_HD void finish(std::size_t block, std::size_t groups, std::size_t n,
                          const TeamColumns& shared, const Team& team) const {
@@ -236,7 +230,7 @@ struct WalkColumns {
 
 }  // namespace cuda_detail
 
-/// Fills `targets`, which lie on the device, as does all that `walk` views. Waits for the counts.
+/// `targets` and all that `walk` views lie on the device. Waits for the counts.
 template <class Walk>
 Counts draw_by_teams(parallel::Cuda& exec, const Walk& walk, const TerrainTargets& targets) {
   const std::size_t teams = (walk.columns() + kTeamColumns - 1) / kTeamColumns;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Terrains that are named functions on a device: its threads call the function that the CPU's call
-// (function_values.hpp). Nothing bounds heights that nobody has seen, so no slice is left out.
+// Named functions on a device (function_values.hpp). Their heights have no known bound, so no slice
+// is skipped.
 #pragma once
 
 #include <cstddef>
@@ -42,7 +42,7 @@ struct FunctionWalk : SamplesWalk<FunctionSamples> {
   }
 };
 
-/// As the draw_frame of a map (draw.cuh). `function`: its steps lie in the host's memory.
+/// As the draw_frame of a map (draw.cuh). The steps of `function` lie in the host's memory.
 [[nodiscard]] inline Counts draw_frame(parallel::Cuda& exec, const FunctionView& function,
                                        const TerrainOptions& options, const TerrainCamera& camera,
                                        const TerrainTargets& targets,

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A height map in the memory of a device: the caller's cells, read where they are, and what frames
-// need beside them, the pyramid of MapFilter::mip and the maxima that say what stays hidden. Both
-// are made on the device by the functions of the CPU's (map_view.hpp, ceiling.hpp).
+// A height map in device memory: the caller's cells, read in place, the pyramid of MapFilter::mip,
+// and the maxima that show what stays hidden. The CPU's functions (map_view.hpp, ceiling.hpp) make
+// both on the device.
 //
 // Work O(cells), span O(log size) beside 256 reads of a thread. Takes a third of the map's bytes
-// with the pyramid, and a 256th for the maxima. Waits for the highest height.
+// for the pyramid and a 256th for the maxima. Waits for the highest height.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,6 @@
 namespace rastrum::terrain {
 namespace cuda_detail {
 
-/// Cell i of an image `width` wide, by f(x, y).
 template <class F>
 struct CellOfIndex {
   F f;
@@ -32,13 +31,13 @@ struct CellOfIndex {
 
 }  // namespace cuda_detail
 
-/// Images on the device, each made from the one before, and their list there.
+/// Images on the device, each made from the one before.
 template <class T>
 class DeviceLevels {
  public:
   explicit DeviceLevels(ImageView<const T> finest) { views_.push_back(finest); }
 
-  /// Appends an image that is `edge` times smaller than the last, rounded up, of f(x, y).
+  /// Appends an image of f(x, y), `edge` times smaller than the last, rounded up.
   template <class F>
   void append(parallel::Cuda& exec, int edge, const F& f) {
     const int width = (views_.back().width + edge - 1) / edge;
@@ -52,9 +51,8 @@ class DeviceLevels {
   [[nodiscard]] const ImageView<const T>& last() const { return views_.back(); }
   [[nodiscard]] bool is_one_cell() const { return last().width == 1 && last().height == 1; }
 
-  /// Brings the list to the device. Does not wait: the levels must outlive the next wait.
+  /// Copies the list to the device. Does not wait: the levels must outlive the next wait.
   void finish(parallel::Cuda& exec) { list_ = parallel::upload(exec, views_); }
-  /// From level `first` on.
   [[nodiscard]] std::span<const ImageView<const T>> list(std::size_t first = 0) const {
     return std::span<const ImageView<const T>>(list_.data(), list_.size()).subspan(first);
   }
@@ -65,7 +63,7 @@ class DeviceLevels {
   parallel::DeviceBuffer<ImageView<const T>> list_;
 };
 
-/// Memory of the device, which must outlive what is made of it. Cells lie row by row without gaps.
+/// Device memory without gaps between rows. It must outlive what is made of it.
 struct DeviceCells {
   ImageView<const float> heights;
   ImageView<const Rgba8> colors;  ///< of any size, stretched over the map
@@ -74,7 +72,7 @@ struct DeviceCells {
 class DeviceMap {
  public:
   /// `whole`: with the pyramid of MapFilter::mip. Throws Error{invalid_argument} for a map without
-  /// cells or with rows apart, Error{out_of_memory}.
+  /// cells or with gaps between rows, Error{out_of_memory}.
   DeviceMap(parallel::Cuda& exec, const DeviceCells& cells, bool whole)
       : heights_(checked(cells.heights)), colors_(checked(cells.colors)), maxima_(cells.heights) {
     while (whole && !heights_.is_one_cell())
@@ -111,15 +109,14 @@ class DeviceMap {
 
   DeviceLevels<float> heights_;
   DeviceLevels<Rgba8> colors_;
-  DeviceLevels<float> maxima_;  ///< from level 1 on the ceiling's
+  DeviceLevels<float> maxima_;  ///< the ceiling's levels, from level 1 on
   MapLevels levels_;
   float highest_ = 0;
 };
 
-/// A Setup's lists on the device.
 class DeviceSetup {
  public:
-  /// Does not wait: `setup` must stay until the context was waited for.
+  /// Does not wait: `setup` must stay until the next wait on `exec`.
   DeviceSetup(parallel::Cuda& exec, const Setup& setup)
       : shared_(setup),
         ux_(parallel::upload(exec, setup.ux)),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which terrains a device draws, and how much memory it takes for them, without a header of CUDA.
+// Which terrains a device draws and how much memory they take, without a CUDA header.
 #include <algorithm>
 
 #include <rastrum/terrain/cuda/device.hpp>
@@ -18,22 +18,21 @@ std::string why_not_on_device(const Terrain& terrain, const TerrainOptions& opti
 }
 
 std::uint64_t device_bytes(const Terrain& terrain, const TerrainOptions& options) {
-  // Maxima of 16 × 16 cells and more; they form a pyramid, whose odd sizes round up.
+  // Maxima of 16 × 16 cells and more form a pyramid, whose odd sizes round up.
   const std::uint64_t map = map_bytes(terrain);
   std::uint64_t bytes = map + map / 128;
   if (options.filter == MapFilter::mip) bytes += map / 2;
-  // A rolled picture is no larger than the upright one that it is taken from.
+  // The picture, and the upright one, which is no smaller if the picture is rolled.
   bytes += 2 * (sizeof(Rgba8) + sizeof(float)) * static_cast<std::uint64_t>(options.width) *
            static_cast<std::uint64_t>(options.height);
   const auto slices = static_cast<std::uint64_t>(std::min(slice_count(options), kMaxSlices));
-  // The places where teams of 16 columns begin on the classic slices.
+  // Where teams of 16 columns begin on the classic slices.
   constexpr std::uint64_t kTeamColumns = 16, kStartBytes = 16;
   if (options.classic)
     bytes += kStartBytes * slices * (static_cast<std::uint64_t>(options.width) / kTeamColumns + 1);
-  // The march of a function's shadows.
   if (!terrain.is_map())
     if (const auto function = function_view(terrain)) bytes += function->steps.size_bytes();
-  // The setup's lists; then a quarter more, by which an arena rounds blocks up.
+  // The setup's lists, then a quarter more, because an arena rounds blocks up.
   constexpr std::uint64_t kSetupBytes = 64, kSmall = std::uint64_t{1} << 20;
   bytes += kSmall + kSetupBytes * slices;
   return bytes + bytes / 4;

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Draws frames of an added method where maps and targets lie on a device (added_method.hpp).
 #pragma once
 
 #include <rastrum/parallel/cuda/exec.cuh>

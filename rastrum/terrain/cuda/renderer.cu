@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// TerrainRenderer's frames on a CUDA device. The map is copied there once and kept; a frame copies
-// its setup there and its picture back. Memory comes from one arena, so a frame like the one before
-// allocates nothing.
+// TerrainRenderer's frames on a CUDA device. The map is copied once and kept; a frame copies its
+// setup there and its picture back. One arena has the memory, so a frame of the same size allocates
+// nothing.
 #include <rastrum/terrain/cuda/device.hpp>
 #include <rastrum/terrain/cuda/draw.cuh>
 #include <rastrum/terrain/cuda/functions.cuh>
@@ -12,7 +12,6 @@
 namespace rastrum::terrain {
 namespace {
 
-/// Pixel (x, y) of a rolled picture.
 template <class T>
 struct RollPixel {
   Roll roll;
@@ -20,11 +19,10 @@ struct RollPixel {
   RASTRUM_HD T operator()(int x, int y) const { return roll(upright, x, y); }
 };
 
-/// A picture of one kind on the device, and its way back.
 template <class T>
 class DevicePicture {
  public:
-  /// The picture on the device, with this size; empty if `wanted` is.
+  /// Empty if `wanted` is.
   [[nodiscard]] ImageView<T> sized(parallel::Cuda& exec, const ImageView<T>& wanted, int width,
                                    int height) {
     if (wanted.empty()) return {};
@@ -35,8 +33,7 @@ class DevicePicture {
     }
     return {pixels_.data(), width, height, width};
   }
-  /// Makes a picture as large as `wanted`, turned out of `upright`, on the device; does nothing if
-  /// `wanted` is empty.
+  /// Rotates `upright` into an image as large as `wanted`, unless that is empty.
   void roll(parallel::Cuda& exec, const Roll& roll, const ImageView<T>& upright,
             const ImageView<T>& wanted) {
     if (wanted.empty()) return;
@@ -97,8 +94,7 @@ class CudaRenderer final : public DeviceRenderer {
     const bool colors = kept_colors_ != terrain.colors();
     if (map_ && !heights && !colors && whole == whole_) return;
     map_.reset();
-    // Old arrays are freed before new ones are copied. They count as kept only once the copy has
-    // succeeded.
+    // Old arrays are freed before new ones are copied, and count as kept only after the copy.
     if (heights) {
       kept_heights_ = {};
       cells_ = {};

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The terrain functions in the library of device code: sharp_shadows, soft_light and hidden_samples
-// of maps that lie on the host, and the maker of renderer.cu.
+// The terrain functions of the library of device code.
 #include <rastrum/terrain/cuda/device.hpp>
 #include <rastrum/terrain/cuda/shadows.cuh>
 
 namespace rastrum::terrain {
 namespace {
 
-/// The result of compute(exec, map on the device), copied to the host.
 template <class T, class F>
 Image<T> computed(parallel::Cuda& exec, ImageView<const float> heights, const F& compute) {
   const auto width = static_cast<std::size_t>(heights.width);

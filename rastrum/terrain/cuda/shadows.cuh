@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the sun does not reach a height map, on a CUDA device: the definitions of shadows.hpp, a
-// thread a cell.
+// The shadows of a height map on a CUDA device, one thread per cell: the definitions of
+// shadows.hpp.
 //
-// Sharp shadows. The sweep of the CPU (shadow_sweep.hpp) runs through a map column by column; a GPU
-// wants rays that do not wait for each other. Each walks its list of cells as the definition does,
-// but takes 2^l of them at once where the maxima of cells of 2^l × 2^l show that none of them is
-// higher than the ray is where it enters the first: the ray climbs, so none of them hides the sun.
-// It goes up a level where that was so and down one where not, and decides at level 0, by the
-// comparison of the definition. (Tevs, Ihrke and Seidel, "Maximum mipmaps for fast, accurate, and
-// scalable dynamic height field rendering", 2008, for rays of their own each.)
-// Work O(cells · log(steps)) where most is skipped, O(cells · steps) at worst. Takes 7/3 of the
-// map's bytes. Waits.
+// Sharp shadows. The CPU's sweep (shadow_sweep.hpp) runs column by column; a GPU needs rays that do
+// not wait for each other. Each ray walks its list of cells as the definition does, but takes 2^l
+// of them at once if the maxima of 2^l × 2^l cells show that none is higher than the ray at its
+// entry into the first. The ray climbs, so none of them hides the sun. After such a step it goes up
+// a level, else down one, and decides at level 0 by the definition's comparison. (Tevs, Ihrke and
+// Seidel, "Maximum mipmaps for fast, accurate, and scalable dynamic height field rendering", 2008,
+// where each ray differs.) Work O(cells · log(steps)) where most is skipped, O(cells · steps) at
+// worst. Takes 7/3 of the map's bytes. Waits.
 //
 // The march: work O(cells · steps). Takes the map's bytes. Waits.
 #pragma once
@@ -33,7 +32,6 @@ namespace cuda_detail {
 
 inline constexpr float kHole = -std::numeric_limits<float>::infinity();
 
-/// A height as rays see it.
 struct WithoutHole {
   ImageView<const float> heights;
   RASTRUM_HD float operator()(int x, int y) const {
@@ -51,7 +49,7 @@ struct Lower {
   RASTRUM_HD float operator()(float a, float b) const { return b < a ? b : a; }
 };
 
-/// A sun below the horizon: everything but holes is dark.
+/// For a sun below the horizon.
 struct IsNoHole {
   std::span<const float> cells;
   RASTRUM_HD std::uint8_t operator()(std::size_t i) const { return cells[i] == kHole ? 0 : 1; }
@@ -60,7 +58,7 @@ struct IsLit {
   RASTRUM_HD std::uint8_t operator()(std::size_t) const { return 0; }
 };
 
-/// How many suns are seen, by one more or not.
+/// Counts visible suns.
 struct AddLit {
   const std::uint8_t* lit;
   const std::uint8_t* dark;
@@ -129,8 +127,7 @@ inline constexpr bool kAnyOrder<float, terrain::cuda_detail::Lower> = true;  // 
 
 namespace rastrum::terrain {
 
-/// A map with what lets rays skip parts of it, for any number of suns. Takes 4/3 of the map's
-/// bytes.
+/// A map with the maxima by which rays skip parts of it. Takes 4/3 of the map's bytes.
 class ShadowMap {
  public:
   /// `heights`, on the device, must outlive it. Waits.
@@ -148,7 +145,7 @@ class ShadowMap {
   }
   [[nodiscard]] std::size_t cells() const { return map_.size(); }
 
-  /// sharp_shadows, row by row without gaps. Waits.
+  /// Row by row without gaps. Waits.
   void sharp(parallel::Cuda& exec, const Sun& sun,
              parallel::DeviceBuffer<std::uint8_t>& shadow) const {
     using namespace cuda_detail;
@@ -176,7 +173,7 @@ class ShadowMap {
   float highest_ = 0, lowest_ = 0;
 };
 
-/// sharp_shadows of a map on the device, row by row without gaps.
+/// For a map on the device, row by row without gaps.
 [[nodiscard]] inline parallel::DeviceBuffer<std::uint8_t> sharp_shadows(
     parallel::Cuda& exec, ImageView<const float> heights, const Sun& sun, Tiling tiling) {
   const ShadowMap map(exec, heights, tiling);
@@ -185,7 +182,7 @@ class ShadowMap {
   return shadow;
 }
 
-/// How much of 255 is left by as many suns of one brightness, fewer than 256.
+/// The share of 255 that these suns of equal brightness give; fewer than 256 suns.
 [[nodiscard]] inline parallel::DeviceBuffer<std::uint8_t> light_of_suns(
     parallel::Cuda& exec, ImageView<const float> heights, std::span<const Sun> suns,
     Tiling tiling) {
@@ -203,7 +200,7 @@ class ShadowMap {
   return light;
 }
 
-/// hidden_samples of a map on the device, row by row without gaps.
+/// For a map on the device, row by row without gaps.
 [[nodiscard]] inline parallel::DeviceBuffer<std::uint16_t> hidden_samples(
     parallel::Cuda& exec, ImageView<const float> heights, const Sun& sun, const March& march,
     Tiling tiling) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The 8 × 8 blocks in which a translucent piece may be seen, for what makes records of them, with
-// the host (device_layers.cuh) or without (layer_queues.cuh).
+// The 8 × 8 blocks in which a translucent piece may be visible.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +15,7 @@
 
 namespace rastrum::transparency::cuda {
 
-/// The smallest key of a block at any sample: what lies behind it is hidden in all of it.
+/// The smallest key of a block at any sample: what lies behind it is hidden.
 struct FarthestOfBlock {
   raster::Rect view;
   std::size_t columns;
@@ -38,7 +37,7 @@ struct FarthestOfBlock {
   }
 };
 
-/// The blocks of a piece's box in the rows of `view`; none of an opaque piece.
+/// The blocks of a piece's box in `view`; none for an opaque piece.
 struct BlocksOfPiece {
   std::span<const raster::Piece> pieces;
   std::span<const std::uint64_t> farthest;
@@ -61,8 +60,7 @@ struct BlocksOfPiece {
   RASTRUM_HD std::size_t number(const raster::Block& b) const {
     return static_cast<std::size_t>(b.by - by0) * columns + static_cast<std::size_t>(b.bx - bx0);
   }
-  /// The j-th of them, with the pixels of which a sample is covered; none where nothing of the
-  /// piece is seen.
+  /// The j-th block, with the pixels of which a sample is covered; none if the piece is hidden.
   RASTRUM_HD raster::Block block(std::uint32_t piece, std::size_t j) const {
     const raster::Rect b = box(piece);
     const raster::BlockPlace place(j, static_cast<std::size_t>(b.x1 - b.x0));

@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A block of 8 × 8 pixels by a team: paper 4, stage 3, phases 2 and 3, for blocks whose records fit
-// into shared memory.
+// An 8 × 8 block by a team, for records that fit into shared memory: paper 4, stage 3, phases 2
+// and 3.
 //
-// The records (piece, mask) are sorted there by the depth at their samples' centroid, and the
-// samples of the sorted records are numbered by a prefix sum. Segments of them are shaded, a sample
-// a thread whatever its pixel; a bit for each then tells its pixel, whose thread takes the samples
-// of the segment in order, through the depth filter. Pixels that it could not order are blended
-// again, exactly, by their thread alone.
+// The records (piece, mask) are sorted by the depth at their samples' centroid, and their samples
+// are numbered by a prefix sum. Segments of samples are shaded, one per thread whatever its pixel.
+// A pixel's thread then takes its samples in order, through the depth filter. Pixels that it could
+// not order are blended again, exactly, by their thread alone.
 //
-// With several samples a pixel a team blends four of them at once: a segment is shaded once, and a
-// thread takes its samples at one of a pixel's.
+// With several samples per pixel a team blends four at once, and a thread takes one sample of a
+// pixel.
 //
-// Where it deviates: a team owns a block, not a bin of 16 of them, because records carry their
-// masks from binning and need no second division; so a team is small, many are in flight, and low
-// and high density are two sizes of one kernel. Sorting goes through shared memory, not within
-// warps by shuffles, as the paper's does.
+// Where it deviates: a team owns a block, not a bin of 16, because records have their masks from
+// binning and need no second division. So many small teams are in flight, and low and high density
+// are two sizes of one kernel. Sorting uses shared memory, not shuffles within warps.
 #pragma once
 
 #include <cstddef>
@@ -30,8 +28,8 @@
 
 namespace rastrum::transparency::cuda {
 
-/// The records of blocks: those of block b begin at first[b] less `skipped`. `counts` says how many
-/// there are of each; where it is empty, blocks lie side by side, up to first[b + 1].
+/// Block b's records begin at first[b] less `skipped` and number counts[b], or go up to first[b +
+/// 1] if `counts` is empty.
 struct RecordView {
   const raster::Block* records;
   std::span<const std::uint64_t> first;
@@ -44,14 +42,13 @@ struct RecordView {
   }
 };
 
-/// Counters of a frame, on the device: of what is blended, and of the queues (layer_queues.cuh).
 enum Counter : std::size_t {
   kFragments,
   kDeepest,
   kRepaired,
   kCounters,
   kStaged = kCounters,  ///< records that were found
-  kPlaced,              ///< and have their place
+  kPlaced,              ///< records that have their place
   kBoxRuns,
   kLowBlocks,
   kHighBlocks,
@@ -59,7 +56,6 @@ enum Counter : std::size_t {
   kQueueCounters
 };
 
-/// Adds what a thread has counted of its pixels.
 RASTRUM_HD inline void count_layers(std::uint64_t* counters, std::uint64_t fragments,
                                     std::uint32_t deepest, std::uint64_t repaired) {
   if (fragments == 0) return;
@@ -68,10 +64,10 @@ RASTRUM_HD inline void count_layers(std::uint64_t* counters, std::uint64_t fragm
   if (repaired != 0) parallel::add_to_sum(counters[kRepaired], repaired);
 }
 
-/// Low density: two warps, a thread a pixel, in 9 KiB; with four samples a thread a sample. High:
-/// what 48 KiB hold, with more threads to shade and to sort. As nvcc 13 compiles them for sm_90, a
-/// thread with the lit shaders likes 161 registers, so that 6 teams of low density fit a
-/// multiprocessor; held to 128, 8 of them are 3 to 6 % faster on an H200, 10 no faster than 8.
+/// Low density: two warps, a thread per pixel (with four samples, per sample), in 9 KiB. High: 48
+/// KiB, with more threads to shade and sort. With the lit shaders nvcc 13 gives a thread 161
+/// registers on sm_90, so 6 teams of low density fit a multiprocessor; held to 128, 8 of them are 3
+/// to 6 % faster on an H200, and 10 no faster than 8.
 struct LowDensity {
   static constexpr std::size_t kRecords = 256, kSegment = 128;
   static constexpr int kThreads = 64;
@@ -86,14 +82,14 @@ struct HighDensity {
 template <class Density, std::size_t samples>
 struct BlockScratch {
   static constexpr std::size_t kSegmentWords = Density::kSegment / 32;
-  static constexpr std::size_t kPlaces = 64 * samples;  ///< the pixels of each sample
+  static constexpr std::size_t kPlaces = 64 * samples;  ///< each sample's pixels
 
   std::uint64_t sort_keys[Density::kRecords];
   std::uint16_t order[Density::kRecords];          ///< of the records, as sorted
-  std::uint32_t first[Density::kRecords + 1];      ///< sample of each sorted record
-  std::uint64_t keys[samples][Density::kSegment];  ///< of its samples, 0: not there; colours
+  std::uint32_t first[Density::kRecords + 1];      ///< first sample of each sorted record
+  std::uint64_t keys[samples][Density::kSegment];  ///< of its samples; 0: none
   float r[Density::kSegment], g[Density::kSegment], b[Density::kSegment], a[Density::kSegment];
-  std::uint32_t takers[64][kSegmentWords];  ///< which samples of the segment a pixel has
+  std::uint32_t takers[64][kSegmentWords];  ///< samples of the segment, per pixel
   std::uint64_t opaque[kPlaces], limit[kPlaces];
   std::uint32_t layers[kPlaces];
 };
@@ -107,8 +103,8 @@ struct BlendBlock {
       Density::kThreads < 64 * kSamples ? 64 * kSamples : Density::kThreads;
   static constexpr int kResident = kThreads == Density::kThreads ? Density::kResident : 0;
   static constexpr std::size_t kMembers = parallel::cuda_system::kTeamMembers<kThreads>;
-  /// Places that a member keeps to itself: one, where there are threads enough. Place 64 · s + p is
-  /// sample s of pixel p.
+  /// Places that a member owns: one, if there are threads enough. Place 64 · s + p is sample s of
+  /// pixel p.
   static constexpr std::size_t kShare = (Scratch::kPlaces + kMembers - 1) / kMembers;
 
   Frame frame;
@@ -148,7 +144,7 @@ struct BlendBlock {
 
  private:
   RASTRUM_HD static int sample_of(std::size_t q) { return static_cast<int>(q / 64); }
-  /// f(k, q) for the k-th place q of a member. Unrolled, a pixel stays in registers.
+  /// Unrolled, so that a pixel stays in registers.
   template <class Team, class F>
   RASTRUM_HD static void each_own(const Team& team, const F& f) {
     for (std::size_t k = 0; k < kShare; ++k) {
@@ -186,7 +182,6 @@ struct BlendBlock {
     team.sync();
   }
 
-  /// Samples [begin, begin + n) of the sorted records.
   template <class Team>
   RASTRUM_HD void shade(std::size_t b, std::span<const raster::Block> mine, std::size_t begin,
                         std::size_t n, Scratch& s, const Team& team) const {
@@ -230,7 +225,7 @@ struct BlendBlock {
     s.limit[q] = pixel.limit(s.opaque[q]);
   }
 
-  /// Whether it had to be blended again.
+  /// Returns whether it had to be blended again.
   RASTRUM_HD bool finish(Pixel& pixel, std::size_t b, std::size_t q,
                          std::span<const raster::Block> mine, Scratch& s) const {
     const std::size_t p = q % 64;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Blocks with more records than shared memory holds: their fragments are written to the memory of
-// the device, pixel behind pixel, sorted by (pixel, key) and blended, a thread a pixel. The tier
-// that has no limit, which paper 4 lacks (its high rasterizer paints such bins red).
+// Blocks with more records than shared memory holds. Their fragments are written to device memory,
+// sorted by (pixel, key) and blended, a thread per pixel. This tier has no limit; paper 4 lacks it
+// (its high rasterizer paints such bins red).
 //
-// The sort is two stable ones (sort_by_key), as a key has no bits left for a pixel. Pixels go in
-// turns, so that what is sorted keeps to a budget; one pixel at least goes at a time, which takes
-// 24 bytes for each of its layers, less than the pieces themselves.
+// The sort is two stable ones (sort_by_key), because a key has no bits left for a pixel. Pixels go
+// in turns within a budget, at least one at a time, which takes 24 bytes per layer, less than the
+// pieces.
 #pragma once
 
 #include <bit>
@@ -29,7 +29,6 @@ struct DeepPixels {
   int sample;  ///< of those that the frame has at once
 
   RASTRUM_HD std::size_t place(std::size_t q) const { return blocks[q / 64] * 64 + q % 64; }
-  /// Calls f(key) for the fragments before the opaque surface, as their records come.
   template <class F>
   RASTRUM_HD void each_key(std::size_t q, const F& f) const {
     const std::size_t b = blocks[q / 64], p = q % 64;
@@ -47,7 +46,7 @@ template <class Frame>
 struct CountDeep {
   DeepPixels<Frame> pixels;
   std::size_t count;
-  /// Behind the last pixel 0, in whose place the scan puts the sum.
+  /// 0 behind the last pixel, where the scan puts the sum.
   RASTRUM_HD std::uint64_t operator()(std::size_t q) const {
     std::uint64_t n = 0;
     if (q < count) pixels.each_key(q, [&](std::uint64_t) { ++n; });
@@ -59,7 +58,7 @@ template <class Pixel, class Frame>
 struct WriteDeep {
   DeepPixels<Frame> pixels;
   std::span<const std::uint64_t> first;
-  std::size_t begin;  ///< pixels from here on
+  std::size_t begin;  ///< the first pixel
   std::uint64_t* sort_keys;
   std::uint32_t* owners;
   RASTRUM_HD void operator()(std::size_t i) const {
@@ -71,7 +70,7 @@ struct WriteDeep {
   }
 };
 
-/// Blends the sorted fragments of a pixel. They come in order, so nothing is held back.
+/// Blends a pixel's sorted fragments. They come in order, so nothing is held back.
 template <class Pixel, class Frame>
 struct BlendDeep {
   DeepPixels<Frame> pixels;
@@ -102,8 +101,8 @@ struct BlendDeep {
   }
 };
 
-/// Blends a sample of `blocks`, sorting at most `most` fragments at a time (but a whole pixel's).
-/// Waits for the number of fragments, and for where a turn ends where they take several.
+/// Sorts at most `most` fragments at a time (but a whole pixel's). Waits for the number of
+/// fragments, and for the ends of several turns.
 template <class Pixel, class Frame>
 void blend_deep(parallel::Cuda& exec, const Frame& frame, const RecordView& records,
                 std::span<const std::size_t> blocks, int sample, std::uint64_t most,

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Exact transparency on a device: LucidRaster's pipeline (paper 4, "Pipeline description", stages 2
-// and 3) over pieces that are set up; with the host, which waits for sizes, in the memory that it
-// is given, or without (layer_queues.cuh).
+// and 3) over pieces that are set up. Either the host waits for sizes, in the memory it is given,
+// or it runs without the host (layer_queues.cuh).
 //
 //   pieces ──count──▶ records a block ──scan──▶ places ──write──▶ records: (piece, block, mask)
 //          ──by density──▶ low, high: a team a block, in shared memory     block_teams.cuh
 //                          deep: fragments sorted in the device's memory   deep_pixels.cuh
 //
-// Where it deviates from the paper: bins are blocks of 8 × 8 pixels, whose records carry exact
+// Where it deviates from the paper: bins are blocks of 8 × 8 pixels, whose records have exact
 // masks; threads share blocks of boxes, whatever their triangle (expand_each), not rows within a
-// subgroup; no density has a limit; and what the filter cannot order is put right. The order of
-// layers and the colours are those of the host's scalar path, bit for bit, in whatever order the
-// records were written, as nothing but counts depends on it. Unsorted blending takes the same way
-// with another sort_key: a device without a rasterizer's order in hardware must sort for that, too.
+// subgroup; no density has a limit; and pixels that the filter cannot order are repaired. Layers
+// and colours are those of the host's scalar path, bit for bit, because only counts depend on the
+// order in which records are written. Unsorted blending differs only in its sort_key: without a
+// rasterizer's order in hardware a device must sort for it, too.
 #pragma once
 
 #include <algorithm>
@@ -38,34 +38,33 @@
 
 namespace rastrum::transparency {
 
-/// A frame, or a band of its rows, with one sample a pixel, whose opaque surface is drawn. Memory
-/// of the device: 8 × 8 blocks of `view`, row by row, of 64 pixels each, element 8 · row + column;
-/// those of the last ones that lie outside are set, too, and stay as they are.
+/// A frame, or a band of its rows, with one sample per pixel, whose opaque surface is drawn. Device
+/// memory: the 8 × 8 blocks of `view`, row by row, of 64 pixels each, element 8 · row + column.
+/// Elements outside of `view` must be set, too, and do not change.
 struct DeviceLayers {
   raster::Rect view;                      ///< px; begins with a block's first pixel
-  std::span<const raster::Piece> pieces;  ///< those with kTranslucent are blended, others left
-                                          ///< out; those of a clipped triangle side by side
+  std::span<const raster::Piece> pieces;  ///< a clipped triangle's lie side by side; only those
+                                          ///< with kTranslucent are blended
   std::span<std::uint64_t> keys;          ///< of the opaque surface; raised to the nearest layer's
-  std::span<Vec4> colors;  ///< premultiplied: the opaque surface, 0 where none is; then the picture
+  std::span<Vec4> colors;  ///< premultiplied: the opaque surface or 0; then the picture
 };
 
-/// The same with several samples: keys and colours are planes, `plane` elements apart, and pieces
-/// those of the pixels' centres (raster/cuda/pieces.cuh).
+/// With several samples: keys and colours are planes, `plane` elements apart, and pieces are at the
+/// pixels' centres (raster/cuda/pieces.cuh).
 struct DeviceSampledLayers : DeviceLayers {
   raster::SamplePattern samples;
   std::size_t plane = 0;
 };
 
-/// Queues of a band whose layers are blended without the host.
+/// Queues of a band that is blended without the host.
 struct LeftLayers {
   raster::LeftPieces pieces;
-  std::size_t records = 0;            ///< room for so many
-  bool stores_shading = false;        ///< a Shade::Record for each piece, of a shader that has them
-  std::uint64_t* counters = nullptr;  ///< of the device: cuda::kQueueCounters, 0
-  std::uint64_t* held = nullptr;      ///< of the device, 0: raised where the host has to go on
+  std::size_t records = 0;            ///< room
+  bool stores_shading = false;        ///< a Shade::Record for each piece, if the shader has them
+  std::uint64_t* counters = nullptr;  ///< on the device: cuda::kQueueCounters, 0
+  std::uint64_t* held = nullptr;      ///< on the device, 0; raised if the host has to go on
 };
 
-/// Counts of such a band, on the host.
 struct LayerQueueCounts {
   std::array<std::uint64_t, cuda::kQueueCounters> of{};
   std::uint64_t pieces = 0;  ///< places of the queue of pieces
@@ -81,8 +80,8 @@ struct LayerQueueCounts {
   }
 };
 
-/// Gives what follows the layers to the stream, which does nothing where *held (of the device;
-/// null: there is none) is not 0. Waits, and returns what was counted.
+/// Enqueues what follows the layers, which does nothing if *held (on the device; may be null) is
+/// not 0. Waits, and returns the counts.
 using FinishBand = std::function<LayerQueueCounts(const std::uint64_t* held)>;
 
 namespace cuda {
@@ -96,7 +95,7 @@ struct CountRecord {
   }
 };
 
-/// Writes the records of a turn and counts down what is left to write of each block.
+/// Writes the records of a turn and counts down each block's rest.
 struct WriteRecord {
   BlocksOfPiece blocks;
   Turn turn;
@@ -117,7 +116,6 @@ struct BlockOfTurn {
   std::size_t begin;
   RASTRUM_HD std::size_t operator()(std::size_t i) const { return begin + i; }
 };
-/// Whether a block has more than `above` records and no more than `most`.
 struct HasRecords {
   std::span<const std::uint64_t> first;
   std::uint64_t above, most;
@@ -127,11 +125,9 @@ struct HasRecords {
   }
 };
 
-/// The stages of one frame with one way of blending.
 template <class Pixel, class Frame>
 class LayerListing {
  public:
-  /// Planes of keys and colours are `plane` elements apart, one for each of `samples`.
   LayerListing(parallel::Cuda& exec, const Frame& frame, const raster::SamplePattern& samples,
                std::size_t plane, const DeviceLayerTuning& tuning)
       : exec_(exec),
@@ -144,7 +140,7 @@ class LayerListing {
   }
 
   [[nodiscard]] DeviceLayerCounts operator()() {
-    // One more, in whose place the scan puts the sum.
+    // The scan puts the sum into the last one.
     auto counts = parallel::make_buffer<std::uint32_t>(exec_, blocks_ + 1);
     parallel::clear(exec_, counts);
     auto counters = parallel::make_buffer<std::uint64_t>(exec_, kCounters);
@@ -187,7 +183,6 @@ class LayerListing {
   }
 
  private:
-  /// The rows of pixels in which the blocks [begin, end) lie.
   [[nodiscard]] raster::Rect rows(std::size_t begin, std::size_t end) const {
     const std::size_t columns = frame_.columns();
     const raster::Rect& v = frame_.view;
@@ -237,13 +232,11 @@ class LayerListing {
   DeviceLayerCounts out_;
 };
 
-/// Throws where a device has no such method.
 inline void require_method(Transparency method) {
   if (method != Transparency::exact && method != Transparency::unsorted)
     throw Error(Errc::invalid_argument, "transparency on a device is exact or unsorted");
 }
 
-/// The two functions below: frames of one sample and of several.
 template <class Frame>
 DeviceLayerCounts blend(parallel::Cuda& exec, const DeviceLayers& layers, const Frame& frame,
                         const raster::SamplePattern& samples, std::size_t plane,
@@ -259,7 +252,7 @@ DeviceLayerCounts blend(parallel::Cuda& exec, const DeviceLayers& layers, const 
   return LayerListing<FrontToBackPixel, Frame>(exec, frame, samples, plane, tuning)();
 }
 
-/// The same by queues, for the functions below that are so named.
+/// The same by queues.
 template <class Pixel, class Shade, class Frame>
 bool run_queues(parallel::Cuda& exec, const Frame& frame, const raster::SamplePattern& samples,
                 std::size_t plane, const LeftLayers& left, const DeviceLayerTuning& tuning,
@@ -302,12 +295,12 @@ template <class Shade, class Test>
 
 /// Blends the translucent pieces of `layers` over its opaque surface.
 /// `options`: exact or unsorted (why_not_on_a_device), and the alpha threshold.
-/// `shade`: (key, x, y) → premultiplied Vec4, the colour of a fragment at a pixel's centre; the
-/// key has its depth and id (piece.hpp). `test`: (key, x, y) → bool, for pieces with kMayDrop.
-/// Both are copied into kernels, are called any number of times, and must be pure.
-/// Waits for sizes and, at the end, for its counts. Memory: 8 bytes a piece, 20 a block, and what
-/// `tuning.bytes` says. Work O(blocks of boxes + fragments · log of a block's records) where the
-/// filter orders nearly all.
+/// `shade`: (key, x, y) → premultiplied Vec4, a fragment's colour at a pixel's centre; the key has
+/// its depth and id (piece.hpp). `test`: (key, x, y) → bool, for pieces with kMayDrop. Both are
+/// copied into kernels, called any number of times, and must be pure.
+/// Waits for sizes and, at the end, for its counts. Memory: 8 bytes per piece, 20 per block, and
+/// `tuning.bytes`. Work O(blocks of boxes + fragments · log of a block's records) if the filter
+/// orders nearly all.
 /// Throws Error{invalid_argument} for other methods or more than 2³² pieces, Error{out_of_memory}.
 template <class Shade, class Test = cuda::KeepAll>
 DeviceLayerCounts blend_layers(parallel::Cuda& exec, const DeviceLayers& layers,
@@ -317,11 +310,10 @@ DeviceLayerCounts blend_layers(parallel::Cuda& exec, const DeviceLayers& layers,
                      options.method, tuning);
 }
 
-/// The same at each of several samples, which have their own planes of keys and colours. `shade`
-/// (a raster::ShadedOnce, or alike) and `test` are asked for the one colour and answer that a
-/// primitive has in a pixel, by the key of any of its samples, so they may read its id alone.
-/// Records are found once for all samples, ordered and shaded once for four. Work: that of one,
-/// times the samples.
+/// The same at several samples, with planes of keys and colours. `shade` (a raster::ShadedOnce, or
+/// alike) and `test` give a primitive's one colour and answer in a pixel, by the key of any sample,
+/// so they may read its id alone. Records are found once for all samples, ordered and shaded once
+/// for four. Work: that of one, times the samples.
 template <class Shade, class Test = cuda::KeepAll>
 DeviceLayerCounts blend_sampled_layers(parallel::Cuda& exec, const DeviceSampledLayers& layers,
                                        const TransparencyOptions& options, const Shade& shade,
@@ -331,10 +323,10 @@ DeviceLayerCounts blend_sampled_layers(parallel::Cuda& exec, const DeviceSampled
   return cuda::blend(exec, layers, frame, layers.samples, layers.plane, options.method, tuning);
 }
 
-/// blend_layers of pieces in a queue, layers.pieces being its room, without the host: it calls
-/// finish(left.held), which gives what follows to the stream, waits, and returns what was counted;
-/// what follows does nothing where *held is not 0, and then finish(nullptr) comes after what the
-/// host had to see to (deep blocks). False: a queue was too small, and nothing was blended.
+/// blend_layers without the host; the room of the queue of pieces is layers.pieces. It calls
+/// finish(left.held); work enqueued there does nothing if *held is not 0. After work that needs the
+/// host (deep blocks) it calls finish(nullptr). Returns false if a queue was too small; then
+/// nothing was blended.
 template <class Shade, class Test = cuda::KeepAll>
 [[nodiscard]] bool blend_left_layers(parallel::Cuda& exec, const DeviceLayers& layers,
                                      const LeftLayers& left, const TransparencyOptions& options,
@@ -343,7 +335,7 @@ template <class Shade, class Test = cuda::KeepAll>
   return cuda::blend_left<Shade>(exec, cuda::frame_view(layers, options, shade, test), {}, 0, left,
                                  options.method, tuning, finish);
 }
-/// And blend_sampled_layers.
+/// blend_sampled_layers without the host.
 template <class Shade, class Test = cuda::KeepAll>
 [[nodiscard]] bool blend_left_sampled_layers(parallel::Cuda& exec,
                                              const DeviceSampledLayers& layers,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Settings and counts of layers on a device, for code that needs no CUDA header.
+// Settings and counts of layers on a device, for code without a CUDA header.
 #pragma once
 
 #include <algorithm>
@@ -12,20 +12,19 @@
 
 namespace rastrum::transparency {
 
-/// How layers on a device go about their work; no choice changes a pixel.
+/// No choice changes a pixel.
 struct DeviceLayerTuning {
-  /// Records of a block up to which it is of low density, and up to which of high; those beyond go
-  /// through the device's memory. At most 256 and 2,048, which are what shared memory was cut for.
+  /// Most records of a block of low and of high density; others go through device memory. At most
+  /// 256 and 2,048, which shared memory holds.
   std::size_t low_records = 256, high_records = 2048;
-  /// Most that records and fragments may take of the device's memory at a time; more only where one
-  /// block's records, or one pixel's fragments, need it. 0: half a GiB.
+  /// Device memory of records and fragments at a time, but for one block's records or one pixel's
+  /// fragments. 0: half a GiB.
   std::uint64_t bytes = 0;
 
-  /// Half of the bytes are for records of 16; a fragment has a sort_key and an owner, twice while
-  /// they are sorted.
+  /// Half of the bytes are for records of 16. A fragment has a sort_key and an owner, twice while
+  /// it is sorted.
   [[nodiscard]] std::uint64_t most_records() const { return share(16); }
   [[nodiscard]] std::uint64_t most_fragments() const { return share(24); }
-  /// The same with densities of at most `low` and `high` records, which are what teams are cut for.
   [[nodiscard]] DeviceLayerTuning within_teams(std::size_t low, std::size_t high) const {
     DeviceLayerTuning t = *this;
     t.low_records = std::min(low_records, low);
@@ -42,13 +41,13 @@ struct DeviceLayerTuning {
 
 struct DeviceLayerCounts {
   std::uint64_t fragments = 0;  ///< translucent ones before the opaque surface
-  std::uint64_t deepest = 0;    ///< of them at the pixel that has most
+  std::uint64_t deepest = 0;    ///< at the pixel that has most
   std::uint64_t repaired = 0;   ///< pixels that the filter could not order
   std::uint64_t records = 0;    ///< pieces in blocks
   std::uint64_t low_blocks = 0, high_blocks = 0, deep_blocks = 0;
   std::uint64_t turns = 0;
 
-  /// Adds the counts of another part of the picture.
+  /// Adds another part of the picture.
   void add(const DeviceLayerCounts& c) {
     fragments += c.fragments;
     deepest = std::max(deepest, c.deepest);
@@ -61,7 +60,7 @@ struct DeviceLayerCounts {
   }
 };
 
-/// Why a frame's layers are left to the CPU, for the statistics; empty: the device has them.
+/// Empty if the device draws a frame's layers; else why the CPU does, for the statistics.
 [[nodiscard]] inline std::string_view why_not_on_a_device(const TransparencyOptions& options) {
   return options.method == Transparency::added ? options.added->why_host : std::string_view();
 }

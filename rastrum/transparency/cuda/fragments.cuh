@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A pixel's fragments on a device, and the two ways of blending them: exactly, through the small
-// depth filter of paper 4 (section "Sample blending"), and in the order of submission. The tiers of
-// block_teams.cuh and deep_pixels.cuh share this code.
-//
-// Where it deviates from the paper: colours are float32, and a pixel in which a fragment left the
-// filter too early is known (its fragments did not leave in falling order) and is blended again,
-// window by window, so that the result is exact. Operations are those of the host (over.hpp).
+// A pixel's fragments on a device, blended exactly, through the small depth filter of paper 4
+// (section "Sample blending"), or in the order of submission.
 #pragma once
 
 #include <cstddef>
@@ -24,14 +19,13 @@
 
 namespace rastrum::transparency::cuda {
 
-/// A test that all fragments pass.
 struct KeepAll {
   RASTRUM_HD bool operator()(std::uint64_t, int, int) const { return true; }
 };
 
-/// Whether a piece that its triangle was clipped to gives a pixel its fragment: pieces may overlap
-/// by a snapped vertex, and the nearest counts, of equal ones the first. They lie side by side.
-/// key_at(piece) → its key there, 0 where it does not cover the pixel.
+/// A clipped triangle's pieces lie side by side and may overlap by a snapped vertex. The nearest
+/// gives a pixel its fragment, of equal ones the first. key_at(piece) → its key there, 0 if it does
+/// not cover the pixel.
 template <class KeyAt>
 RASTRUM_HD bool is_nearest_of_clipped(std::span<const raster::Piece> pieces, std::size_t piece,
                                       std::uint64_t key, const KeyAt& key_at) {
@@ -43,9 +37,9 @@ RASTRUM_HD bool is_nearest_of_clipped(std::span<const raster::Piece> pieces, std
   return true;
 }
 
-/// The data that a shader reads of a triangle, made once for all of its fragments. Only shaders
-/// with a Shade::Record have such data; they then have Shade::wants_records and record(), and take
-/// a record in the place of a key's triangle.
+/// A triangle's data for a shader, made once for all of its fragments. Only shaders with a
+/// Shade::Record have them; they also have Shade::wants_records and record(), and take a record in
+/// place of a key's triangle.
 struct NoRecord {};
 template <class Shade>
 struct RecordOfShade {
@@ -63,18 +57,18 @@ using RecordOf = typename RecordOfShade<Shade>::Type;
 template <class Shade>
 inline constexpr bool kHasRecords = !std::is_same_v<RecordOf<Shade>, NoRecord>;
 
-/// A frame, or a band of it, as kernels see it. Memory of the device: 8 × 8 blocks, row by row, of
-/// 64 pixels each, element 8 · row + column.
+/// A frame, or a band of it. Device memory: 8 × 8 blocks, row by row, of 64 pixels each, element 8
+/// · row + column.
 template <class Shade, class Test>
 struct FrameView {
   raster::Rect view;  ///< begins with a block's first pixel
   std::span<const raster::Piece> pieces;
-  std::uint64_t* keys;  ///< of the opaque surface; become those of the nearest fragment
+  std::uint64_t* keys;  ///< of the opaque surface; become the nearest fragment's
   Vec4* colors;         ///< of the opaque surface, premultiplied; become the picture's
-  float opaque_at;      ///< a pixel is finished where no more is seen through its layers
+  float opaque_at;      ///< a pixel is finished if no more shows through its layers
   Shade shade;          ///< (key, x, y) → premultiplied colour
-  Test test;            ///< (key, x, y) → whether a fragment of a piece with kMayDrop is there
-  const RecordOf<Shade>* shaded = nullptr;  ///< of each piece; null: none
+  Test test;            ///< (key, x, y) → whether a fragment of a piece with kMayDrop passes
+  const RecordOf<Shade>* shaded = nullptr;  ///< of each piece; may be null
 
   RASTRUM_HD std::size_t columns() const {
     return static_cast<std::size_t>((view.x1 - view.x0 + raster::kBlockSize - 1) /
@@ -84,7 +78,6 @@ struct FrameView {
     return static_cast<std::size_t>((view.y1 - view.y0 + raster::kBlockSize - 1) /
                                     raster::kBlockSize);
   }
-  /// Where pixel i of block b lies.
   RASTRUM_HD int x_of(std::size_t b, std::size_t i) const {
     const auto column = static_cast<int>(raster::BlockPlace(b, columns()).column);
     return view.x0 + column * raster::kBlockSize + static_cast<int>(i % raster::kBlockSize);
@@ -93,23 +86,21 @@ struct FrameView {
     const auto row = static_cast<int>(raster::BlockPlace(b, columns()).row);
     return view.y0 + row * raster::kBlockSize + static_cast<int>(i / raster::kBlockSize);
   }
-  /// How many samples of a pixel a kernel blends at once.
+  /// Samples of a pixel that a kernel blends at once.
   static constexpr int kSamples = 1;
   [[nodiscard]] FrameView from_sample(const raster::SamplePattern&, int, std::size_t) const {
     return *this;
   }
-  /// The key and the colour of element `at`, for one of those kSamples samples.
   RASTRUM_HD std::uint64_t& key_of(int, std::size_t at) const { return keys[at]; }
   RASTRUM_HD Vec4& color_of(int, std::size_t at) const { return colors[at]; }
-  /// The key of the fragment that a record has in a pixel of its mask; 0 if there is none or the
-  /// test drops it.
+  /// A record's key in a pixel of its mask; 0 if it has no fragment there or the test drops it.
   RASTRUM_HD std::uint64_t key(const raster::Block& record, int x, int y, int = 0) const {
     const raster::Piece& piece = pieces[record.piece];
     const std::uint64_t w = raster::make_key(raster::depth_at(piece, x, y), piece.low);
     const auto key_at = [&](const raster::Piece& other) { return key_where_covered(other, x, y); };
     return kept(record, w, x, y, key_at);
   }
-  /// The colour of a piece in a pixel; `key` is its key there, of any sample.
+  /// `key` is of any sample.
   RASTRUM_HD Vec4 color(std::uint32_t piece, std::uint64_t key, int x, int y) const {
     if constexpr (kHasRecords<Shade>)
       if (shaded != nullptr) return shade(shaded[piece], key, x, y);
@@ -132,17 +123,15 @@ struct FrameView {
   }
 };
 
-/// Four of the samples of a frame, whose keys and colours are planes. The pieces are those of the
-/// pixels' centres, and a record has the pixels of which it covers any sample, so at a given sample
-/// it may have no fragment. `shade` and `test` are called for a piece in a pixel and hold for all
-/// of its samples, so four samples call them once.
+/// Four of a frame's samples, whose keys and colours are planes. The pieces are at the pixels'
+/// centres. A record has the pixels of which it covers any sample, so a given sample may have no
+/// fragment. `shade` and `test` hold for all samples of a pixel, so four samples call them once.
 template <class Shade, class Test>
 struct SampledView : FrameView<Shade, Test> {
   static constexpr int kSamples = 4;
   raster::SampleOffset at[kSamples] = {};
-  std::size_t plane = 0;  ///< from a sample's keys and colours to the next one's
+  std::size_t plane = 0;  ///< from a sample to the next
 
-  /// Given the view of a frame's first samples, returns the view of the samples from `first` on.
   [[nodiscard]] SampledView from_sample(const raster::SamplePattern& samples, int first,
                                         std::size_t plane_size) const {
     SampledView v = *this;
@@ -172,31 +161,27 @@ struct SampledView : FrameView<Shade, Test> {
   }
 };
 
-/// A fragment between its shading and its blending.
 struct Sample {
   std::uint64_t key = 0;  ///< 0: none
   Vec4 color{};
 };
 
-/// A pixel that is blended front to back. It holds back the nearest kHeld fragments, so that those
-/// of records that overlap in depth leave in order.
-/// Eight cost the paper 1.5 % more than three; here a fragment is 24 bytes, not 8, and what
-/// three or eight cannot order is put right, so four.
+/// Holds back the nearest kHeld fragments, so that those of records that overlap in depth leave in
+/// order. Eight cost the paper 1.5 % more than three. Here a fragment is 24 bytes, not 8, and
+/// pixels that neither can order are repaired, so four.
 class FrontToBackPixel {
  public:
   static constexpr std::size_t kHeld = 4;
   /// So few records may come in any order.
   static constexpr std::size_t kAnyOrder = kHeld + 1;
 
-  /// The sort_key by which records are sorted; ascending is the order in which fragments should
-  /// come. The primitive's id makes it one order, whoever wrote the pieces and the records; pieces
-  /// of one triangle have no pixel in common.
+  /// Ascending, the order in which fragments should come. The primitive's id makes it unique;
+  /// pieces of one triangle have no pixel in common.
   static RASTRUM_HD std::uint64_t record_sort_key(const raster::Piece& piece,
                                                   const raster::Block& b) {
     return near_first(piece, b.mask, b.bx, b.by) |
            static_cast<std::uint32_t>(raster::kIdMask - piece.low);
   }
-  /// The same for fragments, and back.
   static RASTRUM_HD std::uint64_t fragment_sort_key(std::uint64_t key) { return ~key; }
   static RASTRUM_HD std::uint64_t key_of_sort_key(std::uint64_t sort_key) { return ~sort_key; }
 
@@ -214,14 +199,13 @@ class FrontToBackPixel {
     for (std::size_t k = 1; k < kHeld; ++k) held_[k - 1] = held_[k];
     held_[kHeld - 1] = sample;
   }
-  /// No more will come.
   RASTRUM_HD void end(float opaque_at) {
     for (std::size_t k = 0; k < kHeld; ++k)
       if (held_[k].key != 0) leave(held_[k], opaque_at);
   }
   /// Only fragments with keys above this one change anything; `opaque` is the surface's key.
-  /// Fragments farther than a finished pixel's last layer are hidden; nearer ones should have come
-  /// before it.
+  /// Fragments behind a finished pixel's last layer are hidden; nearer ones should have come before
+  /// it.
   [[nodiscard]] RASTRUM_HD std::uint64_t limit(std::uint64_t opaque) const {
     return misplaced_ ? ~std::uint64_t{0} : finished_ ? last_ : opaque;
   }
@@ -245,9 +229,8 @@ class FrontToBackPixel {
   bool finished_ = false, misplaced_ = false;
 };
 
-/// A pixel that blends each fragment before those that came earlier, in the order of submission:
-/// what a GPU's blending makes of unsorted triangles. Records of one triangle share its id, so
-/// sorting them by it is exact.
+/// Blends each fragment over the earlier ones, in the order of submission, as a GPU blends unsorted
+/// triangles. A triangle's records share its id, so sorting by it is exact.
 class AsSubmittedPixel {
  public:
   static constexpr std::size_t kAnyOrder = 1;
@@ -255,7 +238,7 @@ class AsSubmittedPixel {
                                                   const raster::Block&) {
     return raster::kIdMask - piece.low;
   }
-  // The depth's sign is never set, so an id before it leaves room for all of it.
+  // The depth's sign is never set, so all of it fits behind the id.
   static RASTRUM_HD std::uint64_t fragment_sort_key(std::uint64_t key) {
     return raster::id_of_key(key) << (64 - raster::kIdBits) | key >> raster::kIdBits;
   }
@@ -284,17 +267,16 @@ class AsSubmittedPixel {
   std::uint64_t nearest_ = 0;
 };
 
-/// Blends a pixel front to back in any number of walks over its fragments, each of which finds the
-/// nearest kWindow behind those of the walk before: exact without memory, O(n² / kWindow).
-/// walk(f) calls f(key) for the fragments, in the same order each time; shade(key) → colour.
-/// nearest: of all keys.
+/// Blends a pixel front to back in several walks, each of which finds the next nearest kWindow
+/// fragments: exact without memory, O(n² / kWindow). walk(f) calls f(key) for the fragments, in the
+/// same order each time; shade(key) → colour. `nearest`: of all keys.
 template <class Walk, class ShadeKey>
 RASTRUM_HD SeenPixel blend_in_windows(const Walk& walk, const ShadeKey& shade, float opaque_at,
                                       std::uint64_t& nearest) {
   constexpr std::size_t kWindow = 8;
   struct Place {
     std::uint64_t key = 0;
-    std::uint32_t number = 0;  ///< in the walk: equal keys are several fragments
+    std::uint32_t number = 0;  ///< in the walk: equal keys may be several fragments
     RASTRUM_HD bool before(const Place& o) const {
       return key > o.key || (key == o.key && number < o.number);
     }

@@ -1,25 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Exact transparency on a device without its host: what device_layers.cuh lists with the host,
-// which waits for each size, here goes through queues and counters on the device. Pieces come from
-// the queue that the rasterizer has filled (raster/cuda/left_pieces.cuh), so a triangle is
-// assembled once.
+// Exact transparency on a device without its host: queues and counters on the device replace the
+// waits of device_layers.cuh. Pieces come from the queue of the rasterizer
+// (raster/cuda/left_pieces.cuh), so a triangle is assembled once.
 //
-//   begin      a thread a block: the farthest key of its surface; no records yet
+//   begin      a thread per block: the farthest key of its surface; no records yet
 //   stage      the blocks of the pieces' boxes (visit_blocks): each record goes into one queue,
-//   with
-//              its number among those of its block. Coverage is found once
-//   shade      a thread a piece: what the shader reads of its triangle, once for all its fragments
-//   place      teams take places for the records of their blocks, whose order does not matter, and
-//              queue the blocks by density
-//   scatter    a thread a record
-//   blend      block_teams.cuh, a team a block of low and of high density
+//              with its number among those of its block. Coverage is found once
+//   shade      a thread per piece: what the shader reads of its triangle, once for all fragments
+//   place      teams take places for the records of their blocks, in any order, and queue the
+//              blocks by density
+//   scatter    a thread per record
+//   blend      block_teams.cuh, a team per block of low and of high density
 //
-// Blocks with more records than a team takes are left to the host (deep_pixels.cuh), which learns
-// of them after it has waited. Where a queue was too small, everything is left to it, and nothing
-// was blended. In both cases *held is raised, so that kernels which make images of the band do
-// nothing.
+// Blocks with more records than a team takes are left to the host (deep_pixels.cuh). If a queue was
+// too small, everything is left to it, and nothing was blended. In both cases *held is raised, so
+// kernels that make images of the band do nothing.
 //
-// The results are the listing's, bit for bit: the same records, in the order of the same sort.
+// The results are the listing's, bit for bit: the same records in the order of the same sort.
 #pragma once
 
 #include <algorithm>
@@ -39,19 +36,17 @@
 
 namespace rastrum::transparency::cuda {
 
-/// Records in the order in which they are found. A record that finds no room is lost, so then none
-/// is placed.
+/// In the order in which they are found. If a record finds no room, none is placed.
 struct StagedRecords {
   std::span<raster::Block> records;
   std::span<std::uint32_t> ranks;  ///< among those of the same block
 };
 
-/// The queues and counters that all kernels share.
 struct LayerQueueView {
   raster::LeftPieces left;
   StagedRecords staged;
   std::span<std::uint32_t> counts;  ///< records of each block
-  std::span<std::uint64_t> first;   ///< the place of the first of them
+  std::span<std::uint64_t> first;   ///< place of the first of them
   std::uint64_t* counters;
   std::uint64_t* held;
 
@@ -70,7 +65,6 @@ struct BeginBlock {
   }
 };
 
-/// For visit_blocks.
 struct StageRecords {
   BlocksOfPiece boxes;
   LayerQueueView queues;
@@ -101,7 +95,6 @@ struct StoreShading {
   RASTRUM_HD void end(const Local&) const {}
 };
 
-/// The blocks [512 i, 512 (i + 1)) by a team.
 struct PlaceBlocks {
   static constexpr std::size_t kBlocks = 512;
   struct Scratch {
@@ -162,13 +155,11 @@ struct ScatterRecord {
   RASTRUM_HD void end(const Local&) const {}
 };
 
-/// One band with one way of blending.
 template <class Pixel, class Frame, class Shade>
 class LayerQueues {
  public:
-  /// `frame` is of the pieces of `left`; planes of keys and colours are `plane` elements apart, one
-  /// for each of `samples`. Room for `room` records. Counters, kQueueCounters of them, and *held
-  /// are 0, on the device.
+  /// `frame` has the pieces of `left`; planes of keys and colours are `plane` elements apart. Room
+  /// for `room` records. The kQueueCounters counters and *held are 0, on the device.
   LayerQueues(parallel::Cuda& exec, const Frame& frame, const raster::SamplePattern& samples,
               std::size_t plane, const raster::LeftPieces& left, std::size_t room,
               bool stores_shading, const DeviceLayerTuning& tuning, std::uint64_t* counters,
@@ -193,7 +184,7 @@ class LayerQueues {
     if (shaded_.size() > 0) frame_.shaded = shaded_.data();
   }
 
-  /// Gives all of it to the stream.
+  /// Enqueues all of it.
   void operator()() {
     using parallel::view_of;
     auto farthest = parallel::make_buffer<std::uint64_t>(exec_, blocks_);
@@ -231,7 +222,7 @@ class LayerQueues {
     });
   }
 
-  /// Blends the `blocks` deep blocks, after the host has read how many there are. Waits.
+  /// After the host has read their number. Waits.
   void blend_deep_blocks(std::uint64_t blocks) {
     const std::uint64_t most = tuning_.most_fragments();
     const auto deep =

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The layers of a scene on a device: the translucent pieces of a band of rows, left by the
-// rasterizer or set up here, are blended over its opaque surface (device_layers.cuh). A band whose
-// pieces take too much memory is set up here, and cut in two, down to a row of blocks.
+// The layers of a scene on a device: translucent pieces of a band of rows, left by the rasterizer
+// or set up here, over its opaque surface (device_layers.cuh). A band whose pieces take too much
+// memory is cut in two, down to a row of blocks.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,6 @@
 namespace rastrum::transparency {
 namespace cuda {
 
-/// True for translucent pieces that reach into `view`.
 struct IsLayerIn {
   raster::Rect view;
   raster::SamplePattern samples;
@@ -31,30 +30,29 @@ struct IsLayerIn {
 
 }  // namespace cuda
 
-/// Blends the translucent pieces of a frame on a device (render/cuda/frame.cuh).
+/// For render/cuda/frame.cuh.
 class SceneLayers {
  public:
   [[nodiscard]] static std::string_view why_not(const raster::FrameRequest& request) {
     return why_not_on_a_device(request.transparency);
   }
 
-  /// Blends the translucent pieces of `scene` over `colors`, in the places of the keys of
-  /// `surface`, all its planes, and raises those. `shade` and `test` as of blend_layers, `shade` a
-  /// raster::ShadedOnce where there are several samples. `batch`: primitives that are set up
-  /// at once; `bytes`: what pieces, and again what their records, may take, 0: any. Waits.
+  /// Blends the translucent pieces of `scene` over `colors`, laid out as the keys of `surface` with
+  /// all planes, and raises those keys. `shade` and `test` as for blend_layers; `shade` is a
+  /// raster::ShadedOnce if there are several samples. `batch`: primitives that are set up at once;
+  /// `bytes`: limit of pieces, and again of records; 0: none. Waits.
   template <class Exec, class Shade, class Test>
   void blend(Exec& exec, const raster::DeviceScene<Exec>& scene,
              const raster::DeviceSurface& surface, std::span<Vec4> colors,
              const TransparencyOptions& options, const Shade& shade, const Test& test,
              std::uint64_t batch, std::uint64_t bytes);
-  /// The same of pieces that the rasterizer has left in a queue, without a wait but that of
-  /// `finish` (blend_left_layers). False: nothing was blended, and blend() is to.
+  /// blend() for pieces that the rasterizer has left in a queue; waits only in `finish`
+  /// (blend_left_layers). Returns false if nothing was blended; then blend() has to.
   template <class Shade, class Test>
   [[nodiscard]] bool blend_left(parallel::Cuda& exec, const LeftLayers& left,
                                 const raster::DeviceSurface& surface, std::span<Vec4> colors,
                                 const TransparencyOptions& options, const Shade& shade,
                                 const Test& test, std::uint64_t bytes, const FinishBand& finish);
-  /// Most records of a band so far.
   [[nodiscard]] std::uint64_t most_records() const { return most_records_; }
   void count(FrameStats& stats) const {
     stats.visibility = "layers";
@@ -79,7 +77,6 @@ class SceneLayers {
     const Test& test;
     std::uint64_t batch, bytes;
 
-    /// Calls f(assembly, outcomes) for each batch of primitives and their pieces in `view`.
     template <class F>
     void each_batch(const raster::Rect& view, F&& f) const {
       const std::uint64_t end = scene.first_id() + scene.primitives();
@@ -147,7 +144,7 @@ class SceneLayers {
   std::uint64_t most_records_ = 0;
 };
 
-// Out of the class, so that it is not inline and one source can instantiate it for others.
+// Not inline, so that one source can instantiate it for others.
 template <class Exec, class Shade, class Test>
 void SceneLayers::blend(Exec& exec, const raster::DeviceScene<Exec>& scene,
                         const raster::DeviceSurface& surface, std::span<Vec4> colors,

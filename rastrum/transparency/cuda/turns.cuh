@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bins in turns: the largest runs of neighbouring bins whose items fit a budget together.
+// Runs of neighbouring bins, as long as their items fit a budget together.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ namespace rastrum::transparency::cuda {
 
 struct Turn {
   std::size_t begin = 0, end = 0;  ///< bins
-  std::uint64_t first = 0;         ///< item of the first bin
+  std::uint64_t first = 0;         ///< of the first bin
   std::uint64_t items = 0;
 };
 
@@ -22,7 +22,7 @@ struct EndOfTurn {
   std::size_t begin;
   std::uint64_t most;
   RASTRUM_HD std::uint64_t operator()(std::size_t what) const {
-    // Finds the last of equal places, so that empty bins do not take turns.
+    // The last of equal places, so that empty bins take no turns.
     std::size_t end =
         begin + parallel::expand_detail::last_at_most(first.subspan(begin), first[begin] + most);
     if (end == begin) ++end;
@@ -30,9 +30,9 @@ struct EndOfTurn {
   }
 };
 
-/// The turn behind `turn`; none is left: false. Bin b has the items [first[b], first[b + 1]), so
-/// `first` has an element more than there are bins, `all`. A turn has at most `most` items or one
-/// bin. Waits if there are several.
+/// Sets the next turn, or returns false if none is left. Bin b has the items [first[b], first[b +
+/// 1]); the last element of `first` is `all`. A turn has at most `most` items, or one bin. Waits if
+/// there are several turns.
 inline bool next_turn(parallel::Cuda& exec, std::span<const std::uint64_t> first, std::uint64_t all,
                       std::uint64_t most, Turn& turn) {
   const std::size_t bins = first.size() - 1;
