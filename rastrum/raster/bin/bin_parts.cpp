@@ -6,9 +6,9 @@
 namespace rastrum::raster {
 namespace {
 
-// Costs of drawing, in units of some 10 cycles: a fragment of a micro triangle is 1.
+// Costs of drawing in units of some 10 cycles; a micro triangle's fragment is 1.
 constexpr std::uint64_t kPiece = 16, kPixels = 12'000, kNothing = 300;
-/// Bins of a smaller load are not cut, because each part walks the whole lists of its bin.
+/// Bins of smaller load are not cut, because each part walks the bin's whole lists.
 constexpr std::uint64_t kLeastCut = 16'000;
 constexpr int kLeastSide = 16;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The parts of a view that threads draw, in the order in which they are begun: its bins, but those
-// that hold more than a thread's share are cut in pieces.
+// The parts of a view that threads draw, in the order in which they begin: its bins, cut where they
+// hold more than a thread's share.
 #pragma once
 
 #include <cstdint>
@@ -12,9 +12,8 @@
 
 namespace rastrum::raster {
 
-/// Up to so many threads go through the bins by halves, in their order. A counter, which gives
-/// neighbours to different threads, made opaque frames take 1.05 to 1.08 times as long with two
-/// threads.
+/// Up to so many threads go through the bins by halves, in order. A counter, which gives neighbours
+/// to different threads, made opaque frames take 1.05 to 1.08 times as long with two threads.
 inline constexpr int kFewThreads = 8;
 
 /// A bin or a part of it, at most `side_px` across.
@@ -28,12 +27,12 @@ struct BinPart {
 /// Keeps its memory.
 class BinParts {
  public:
-  /// The bins of what `groups` has been filled with. With few threads they are whole and in order;
-  /// with `cuts` and many, none has much more than a thread's share. Work O(bins).
+  /// Makes the parts of what `groups` was filled with. Few threads get whole bins in order. With
+  /// `cuts` and many threads none has much more than a thread's share. Work O(bins).
   void make(const FrameContext& frame, const BinTable& lists, const TriangleGroups& groups,
             bool cuts);
   [[nodiscard]] std::span<const BinPart> all() const { return parts_; }
-  /// draw(part) for all of them, by all threads.
+  /// draw(part) for all, by all threads.
   template <class Draw>
   void for_each(const FrameContext& frame, const Draw& draw) const {
     if (frame.concurrency() <= kFewThreads)

@@ -11,13 +11,12 @@
 namespace rastrum::raster {
 namespace bin_quadrics {
 
-/// Depths are put in order by so many classes: what is a little out of order hides a little less.
+/// Depths are ordered by so many classes: a slightly wrong order hides only slightly less.
 constexpr std::uint32_t kClasses = 1024;
 std::uint32_t bits_of(float depth) {
   return std::bit_cast<std::uint32_t>(depth);
 }
 
-/// Whether all blocks that the box touches hide it.
 bool is_hidden(const DeferredInBin& piece, const DepthBounds& bounds) {
   if (piece.highest < bounds.bin) return true;
   for (int by = piece.y0 / kBlockSize; by <= (piece.y1 - 1) / kBlockSize; ++by)
@@ -26,7 +25,7 @@ bool is_hidden(const DeferredInBin& piece, const DepthBounds& bounds) {
   return true;
 }
 
-/// Collects those that are to be drawn, until there are enough for all lanes.
+/// Collects pieces to draw until they fill all lanes.
 class Waiting {
  public:
   Waiting(const BinContext& context, Rect rect, BinKeys& keys)
@@ -39,7 +38,7 @@ class Waiting {
       draw_ = &context_.frame->draw_of(id);
       eye_.emplace(*draw_->quadrics, context_.frame->viewport);
     }
-    // Neighbours in depth are none in the caller's arrays.
+    // Neighbours in depth are not neighbours in the caller's arrays.
     draw_->quadrics->prefetch(id - draw_->first_id);
     pieces_[count_++] = piece;
     if (count_ == std::size(pieces_)) draw_all();
@@ -73,7 +72,7 @@ class Waiting {
   const BinContext& context_;
   Rect rect_;
   BinKeys& keys_;
-  const Draw* draw_ = nullptr;  ///< of all that wait
+  const Draw* draw_ = nullptr;  ///< of all that are collected
   std::optional<QuadricEye> eye_;
   DeferredInBin pieces_[QuadricBatch::kCapacity];
   std::uint32_t count_ = 0;

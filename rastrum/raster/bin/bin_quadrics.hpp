@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Deferred quadrics of a bin: spheres, cones and tubes of which setup has found only the box and
-// the nearest depth (kDeferred). The thread that owns the bin goes through them from front to back,
-// passes over those that are hidden by then, makes the quadrics of the others and raises its keys
-// by them at once (decision 0033).
-//
-// So nine tenths of a million spheres that are ten deep are never made, none is kept, and no sample
-// is looked at twice. The order changes no pixel: keys are maxima.
+// Deferred quadrics of a bin: spheres, cones and tubes of which setup found only the box and the
+// nearest depth (kDeferred). The bin's thread takes them from front to back, skips those hidden by
+// then, makes the other quadrics and raises its keys by them (decision 0033). So nine tenths of a
+// million spheres that lie ten deep are never made, none is kept, and no sample is tested twice.
+// The order changes no pixel: keys are maxima.
 #pragma once
 
 #include <cstddef>
@@ -19,19 +17,19 @@
 
 namespace rastrum::raster {
 
-/// A thread's.
+/// One thread's.
 class BinQuadrics {
  public:
   explicit BinQuadrics(MemoryAccount& memory) : sorted_(memory) {}
 
-  /// Raises `keys` by the deferred pieces that `groups` have in `bin`, whose rectangle is `rect`.
-  /// Returns how many samples they cover, where they are not hidden.
-  /// Work O(pieces + samples that are not hidden); memory 24 bytes a piece.
+  /// Raises `keys` by the deferred pieces of `groups` in `bin`, whose rectangle is `rect`. Returns
+  /// the samples covered and not hidden. Work O(pieces + samples not hidden); memory 24 bytes a
+  /// piece.
   std::uint64_t draw(const BinContext& context, std::span<const Group> groups, std::size_t bin,
                      Rect rect, BinKeys& keys);
 
  private:
-  /// From front to back, or nearly.
+  /// From front to back, nearly.
   std::span<const DeferredInBin> sort(std::span<const Group> groups, std::size_t bin);
 
   ScratchBuffer<DeferredInBin> sorted_;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Deferred quadrics with Highway, compiled once per instruction set. Setup finds the boxes and
-// depths of several in lanes; a bin makes the quadrics of those that it sees, several in lanes too,
-// and raises its keys by each, several columns of a row at once: coverage and depth are found
-// together. The bodies are those of the scalar form (rules/quadric_form.inl,
-// rules/quadric_depth.inl), so the same bits.
+// Deferred quadrics with Highway, compiled once per instruction set. Setup finds boxes and depths
+// in lanes. A bin makes its visible quadrics in lanes too, and raises its keys by each, several
+// columns of a row at once. The bodies are the scalar form's (rules/quadric_form.inl,
+// rules/quadric_depth.inl), so the bits are the same.
 
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
@@ -28,7 +27,7 @@ constexpr auto kStepBits = static_cast<unsigned>((1U << kStep) - 1);
 struct Balls {
   WideBall first, second;
 };
-/// The balls about the ends of the first kLanes64 of `count` shapes; the last one again beyond.
+/// The balls about the ends of the first kLanes64 of `count` shapes; repeats the last shape.
 HWY_INLINE Balls load_balls(const QuadricShape* shapes, std::uint32_t count) {
   HWY_ALIGN double v[8][kLanes64];
   for (std::uint32_t lane = 0; lane < kLanes64; ++lane) {
@@ -97,14 +96,14 @@ SetupOutput defer(const QuadricInput& in, Piece* pieces, std::uint32_t* slow) no
   return out;
 }
 
-/// A quadric with the place about which it is told, px.
+/// A quadric with its origin, px.
 struct PlacedQuadric {
   Quadric quadric;
   double x, y;
   bool is_finite;
 };
 
-/// Adds to each quadric the part of its lane, which has so many limits; to `sum` all its numbers.
+/// Adds each lane's part, with `limits` limits, to its quadric, and all numbers to `sum`.
 HWY_INLINE void add_part(const WidePart& part, int limits, W& sum, PlacedQuadric (&out)[kLanes64]) {
   const W w[10] = {part.b,  part.bx,  part.by,  part.d,   part.dx,
                    part.dy, part.dxx, part.dxy, part.dyy, part.inverse_a};
@@ -142,7 +141,6 @@ HWY_INLINE void add_part(const WidePart& part, int limits, W& sum, PlacedQuadric
   }
 }
 
-/// Makes the quadrics of kLanes64 shapes.
 HWY_NOINLINE void make_quadrics(const QuadricBatch& batch, std::uint32_t first,
                                 PlacedQuadric (&out)[kLanes64]) {
   const F64 d;
@@ -184,8 +182,8 @@ HWY_NOINLINE void make_quadrics(const QuadricBatch& batch, std::uint32_t first,
   }
 }
 
-/// surface_at of the side that faces the viewer, of what is not open: parts that no lane's ray
-/// meets are passed over.
+/// surface_at for the side that faces the viewer, of a quadric that is not open. Skips parts that
+/// no lane's ray meets.
 HWY_INLINE Surface front_at(const Quadric& q, const QuadricRow& row, W dx) {
   Surface s{wide(0), below(wide(0), wide(0))};
   for (std::uint32_t k = 0; k < q.part_count; ++k) {
@@ -199,7 +197,7 @@ HWY_INLINE Surface front_at(const Quadric& q, const QuadricRow& row, W dx) {
   return {s.e, both(s.covered, at_most(s.e, wide(q.nearest)))};
 }
 
-/// Raises the keys of one quadric, whose surface_of(row, dx) is in front.
+/// Raises keys by one quadric, whose surface_of(row, dx) is in front.
 template <class SurfaceOf>
 HWY_INLINE void raise_one(const PlacedQuadric& placed, const DeferredInBin& at, Rect bin,
                           const DepthBounds* bounds, const SurfaceView& surface,

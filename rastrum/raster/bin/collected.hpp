@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Entries in the order in which they were made, and the same sorted by bin.
+// Entries in the order in which they were made, and sorted by bin.
 #pragma once
 
 #include <algorithm>
@@ -11,14 +11,14 @@
 
 namespace rastrum::raster {
 
-/// Entries one after the other that lie in the same bin. Neighbours mostly share one: runs are
-/// looked for once, and whole ones are counted and copied.
+/// Consecutive entries in one bin. Neighbours mostly share one, so runs are found once, then
+/// counted and copied whole.
 struct BinRun {
   std::uint32_t bin, count;
 };
 
-/// Entries in the order in which they were made, and how many each bin gets. A thread's: it is
-/// filled again for every group, so that it stays in cache. `Entry` has a member `bin`.
+/// Entries in their order, and how many each bin gets. For one thread, which fills it for every
+/// group, so that it stays in cache. `Entry` has a member `bin`.
 template <class Entry>
 class Collected {
  public:
@@ -30,7 +30,7 @@ class Collected {
     next_.reserve(bins + 1);
     std::fill_n(next_.data(), bins + 1, 0U);
   }
-  /// Room for `n` more entries; say with `added` how many were written.
+  /// Room for `n` more entries; call `added` with the number written.
   [[nodiscard]] Entry* room(std::size_t n) {
     entries_.grow(count_ + n, count_);
     return entries_.data() + count_;
@@ -42,7 +42,7 @@ class Collected {
       const std::uint32_t bin = entries[i].bin;
       const auto other = [&](std::size_t e) { return entries[e].bin ^ bin; };
       std::size_t end = i + 1;
-      // Four at a time: one by one took half again as long wherever the loop lay in two lines.
+      // Four at a time: one by one took half again as long where the loop lay in two cache lines.
       while (end + 4 <= n && (other(end) | other(end + 1) | other(end + 2) | other(end + 3)) == 0)
         end += 4;
       while (end < n && other(end) == 0) ++end;
@@ -54,7 +54,6 @@ class Collected {
     count_ += n;
   }
   [[nodiscard]] std::span<const Entry> entries() const { return {entries_.data(), count_}; }
-  /// The runs of the entries, in their order.
   [[nodiscard]] std::span<const BinRun> runs() const { return {runs_.data(), run_count_}; }
   /// bins + 1 numbers; element b + 1 counts bin b.
   [[nodiscard]] std::span<const std::uint32_t> counts(std::size_t bins) const {
@@ -68,7 +67,6 @@ class Collected {
   std::size_t count_ = 0, run_count_ = 0;
 };
 
-/// The entries of a group, sorted by bin.
 template <class Entry>
 class BinLists {
  public:
@@ -80,7 +78,7 @@ class BinLists {
     const std::span<const std::uint32_t> counts = collected.counts(bins);
     sorted_.reserve(entries.size());
     begin_.reserve(bins + 1);
-    // Shifted by one, so that after the scatter each element has moved on to its own bin's begin.
+    // Shifted by one, so that the scatter moves each element on to its bin's begin.
     std::uint32_t sum = 0;
     begin_[0] = 0;
     for (std::size_t b = 0; b < bins; ++b) {
@@ -91,7 +89,7 @@ class BinLists {
     for (const BinRun& run : collected.runs()) {
       Entry* const to = sorted_.data() + begin_[run.bin + 1];
       begin_[run.bin + 1] += run.count;
-      // Most runs are short: a call of memmove costs more than they do.
+      // Most runs are shorter than a memmove call is worth.
       for (std::uint32_t i = 0; i < run.count; ++i) to[i] = from[i];
       from += run.count;
     }

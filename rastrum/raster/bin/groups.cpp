@@ -11,15 +11,13 @@
 namespace rastrum::raster {
 namespace {
 
-/// Triangles of a group: many, since each costs some work for every bin, whatever it has there;
-/// few where memory is planned, and fewer where each of several threads would get less than some
-/// groups …
+/// Triangles of a group: many, since each group costs some work for every bin. Few where memory is
+/// planned, and fewer where a thread would get too few groups …
 constexpr std::uint64_t kMostGroup = 32768, kPlannedGroup = 4096, kLeastGroup = 512,
                         kGroupsOfThread = 4;
-/// … and that the groups' tables of bins together stay small.
+/// … but enough that the groups' bin tables together stay small.
 constexpr std::uint64_t kMaxBinTables = std::uint64_t{1} << 19;
 
-/// Adds a deferred piece to the bins of its box.
 void bin_deferred(const Piece& piece, const BinTable& lists, Collected<DeferredInBin>& out) {
   const Rect view = lists.bins.view;
   const Rect box = sample_bounds(piece.x, piece.y, view);
@@ -46,14 +44,13 @@ void bin_deferred(const Piece& piece, const BinTable& lists, Collected<DeferredI
   out.added(touched);
 }
 
-/// The pixels of the view in which the piece may cover a sample.
 Rect bounds_of(const Piece& piece, const BinTable& lists) {
   const Rect view = lists.bins.view;
   return (piece.flags & kAllSamples) != 0 ? sample_bounds(piece.x, piece.y, view, lists.reach)
                                           : piece_bounds(piece, view);
 }
 
-/// Adds the pairs of a piece with the bins of its box that it may touch.
+/// Adds the pairs of a piece with the bins that it may touch.
 void bin_piece(const Piece& piece, std::uint32_t index, const BinTable& lists,
                const BinNumbers& numbers, Collected<PieceInBin>& pairs) {
   const Rect view = numbers.view;
@@ -66,11 +63,11 @@ void bin_piece(const Piece& piece, std::uint32_t index, const BinTable& lists,
       static_cast<std::size_t>(bx1 - bx0 + 1) * static_cast<std::size_t>(by1 - by0 + 1);
   PieceInBin* const out = pairs.room(touched);
   std::size_t n = 0;
-  // A box in two bins has a vertex in each, unless the view cuts it: not worth asking.
+  // A box in two bins has a vertex in each, unless the view cuts it: not worth the test.
   const bool asks = touched > 2 && !is_quadric(piece);
   Edges edges = asks ? edges_of(piece) : Edges{};
   if ((piece.flags & kAllSamples) != 0)
-    for (int i = 0; i < edges.count; ++i) {  // at the sample where it is largest
+    for (int i = 0; i < edges.count; ++i) {  // at its best sample
       Edge& e = edges.edge[i];
       const std::int64_t steep = std::int64_t{std::abs(e.a)} + std::abs(e.b);
       e.base += (steep * lists.reach >> kSubpixelBits) + 1;
@@ -86,8 +83,8 @@ void bin_piece(const Piece& piece, std::uint32_t index, const BinTable& lists,
   pairs.added(n);
 }
 
-/// Adds the pairs of pieces [first, …) with the bins of `view` until all are there, or as many as
-/// `most` after a piece. Returns the first piece that was left.
+/// Adds the pairs of pieces [first, …) until all are there, or `most` are reached after a piece.
+/// Returns the first piece left.
 std::uint32_t bin_pieces(const Kernels& kernel, std::span<const Piece> pieces, std::uint32_t first,
                          std::size_t most, const BinTable& lists, Collected<PieceInBin>& pairs,
                          Collected<DeferredInBin>& deferred) {
@@ -112,7 +109,7 @@ std::uint32_t bin_pieces(const Kernels& kernel, std::span<const Piece> pieces, s
           bin_piece(piece, index + i, lists, numbers, pairs);
         ++i;
       }
-      // A piece that touched many bins may have left no room for those after it.
+      // A piece in many bins may leave no room for those after it.
       if (i < n && count() + (n - i) > most) {
         n = i;
         break;
@@ -123,18 +120,17 @@ std::uint32_t bin_pieces(const Kernels& kernel, std::span<const Piece> pieces, s
   return index;
 }
 
-/// Pairs of a group at one time: each is in the group, and those of a thread's group are collected
-/// before, in memory that has doubled.
+/// The most pairs of a group at once. Each is in the group, and before that is collected by a
+/// thread, in memory that has doubled.
 std::size_t most_pairs(const FrameContext& frame, const BinTable& lists, std::size_t groups) {
   const std::size_t entry_bytes = lists.defers ? sizeof(DeferredInBin) : sizeof(PieceInBin);
   if (frame.expansion_bytes == 0) return std::numeric_limits<std::size_t>::max();
   const auto threads = static_cast<std::uint64_t>(frame.concurrency());
-  // With their runs, of which there may be as many.
+  // There may be as many runs.
   const std::size_t collected_bytes = entry_bytes + sizeof(BinRun);
   return frame.expansion_bytes / (groups * entry_bytes + 3 * threads * collected_bytes);
 }
 
-/// Leaves out the pieces that do not touch the view.
 void keep_in_view(Pieces& pieces, const BinTable& lists) {
   std::uint32_t kept = 0;
   for (std::uint32_t i = 0; i < pieces.count; ++i)
@@ -144,11 +140,10 @@ void keep_in_view(Pieces& pieces, const BinTable& lists) {
 
 }  // namespace
 
-/// Everything that a thread needs to fill a group.
 struct TriangleGroups::Filler final : MicroSink {
   explicit Filler(MemoryAccount& memory)
       : pieces(memory), pairs(memory), micro(memory), small(memory), deferred(memory) {}
-  Pieces pieces;  ///< of a group, before those outside of the view are left out
+  Pieces pieces;  ///< of a group, before those outside of the view are dropped
   Collected<PieceInBin> pairs;
   Collected<BinFragment> micro;
   Collected<BinTriangle> small;
@@ -239,7 +234,7 @@ void TriangleGroups::add_loads(const BinTable& lists, const Filler& filler, bool
 
 namespace {
 
-/// Triangles of a group of so many of a view.
+/// The group size for so many triangles of a view.
 std::uint64_t group_size_of(const FrameContext& frame, const BinTable& lists,
                             std::uint64_t triangles) {
   const std::uint64_t most_groups =
@@ -293,7 +288,7 @@ template <class Fill>
 std::optional<std::span<Group>> TriangleGroups::set_up(FrameContext& frame, const BinTable& lists,
                                                        bool micro, std::size_t group_count,
                                                        const Fill& fill) {
-  if (frame.view_bytes != 0) groups_.clear();  // what other views needed
+  if (frame.view_bytes != 0) groups_.clear();  // of other views
   const std::size_t bin_count = lists.bins.count(), list_count = lists.count();
   while (groups_.size() < group_count) groups_.emplace_back(memory_);
   const std::size_t most = most_pairs(frame, lists, group_count);

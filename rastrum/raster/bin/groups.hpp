@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Setup and binning of the fast path: sort-middle (Molnar et al., 1994; paper 1, section 3.3) as a
-// CPU likes it. Triangles are set up in groups whose pieces stay in a core's cache, (bin, piece)
-// pairs are sorted by bin inside each group, and who owns a bin walks the groups.
+// Setup and binning of the fast path: sort-middle (Molnar et al., 1994; paper 1, section 3.3), for
+// a CPU. Triangles are set up in groups whose pieces stay in a core's cache. Each group sorts its
+// (bin, piece) pairs by bin; a bin's owner walks the groups.
 //
-// Deviations from the paper. The sort is a counting sort inside each group: no global sort, no
-// barrier beyond one. Bins are 64² px of 8² blocks. Micro triangles become fragments in setup,
-// where the caller takes them (docs/decisions/0104).
+// Deviations from the paper. The sort is a counting sort in each group: no global sort, and one
+// barrier. Bins are 64² px of 8² blocks. Micro triangles become fragments in setup, where the
+// caller takes them (docs/decisions/0104).
 #pragma once
 
 #include <algorithm>
@@ -29,41 +29,39 @@
 
 namespace rastrum::raster {
 
-/// The lists of a view: one a bin, or two, so that pieces that face away or may drop fragments are
-/// drawn after the rest of the bin. Where surfaces are closed, half of their pieces face away and
-/// nearly all of those are hidden; hierarchical Z then drops them before it covers them. A piece
-/// that may drop fragments hides nothing before it is tested. The order changes no pixel.
+/// The lists of a view: one a bin, or a second one for pieces that face away or may drop fragments,
+/// drawn after the rest. In closed surfaces half of the pieces face away and nearly all of those
+/// are hidden; hierarchical Z then drops them before it covers them. A piece that may drop
+/// fragments hides nothing before its test. The order changes no pixel.
 struct BinTable {
   TileGrid bins;
   bool two = false;
   /// Setup may make deferred pieces (bin/bin_quadrics.hpp).
   bool defers = false;
-  /// Triangles make one piece for all samples of the pixels (kAllSamples); samples lie at most so
-  /// far from the centres, n.8; 0: they make no such pieces.
+  /// Triangles make one piece for all samples of the pixels (kAllSamples), which lie at most so far
+  /// from the centres, n.8. 0: no such pieces.
   int reach = 0;
   /// Setup writes small triangles straight to their bins, for a sink that raises rows.
   bool small = false;
 
   [[nodiscard]] std::size_t count() const { return bins.count() * (two ? 2 : 1); }
-  /// The list of the pieces of bin `b` that are drawn later, where there are two; `b` is the list
-  /// of the rest.
+  /// With two lists, the later one of bin `b`.
   [[nodiscard]] std::size_t later(std::size_t b) const { return b + bins.count(); }
   [[nodiscard]] BinNumbers numbers() const {
     return {bins.view, two ? static_cast<std::uint32_t>(bins.count()) : 0, reach};
   }
 };
 
-/// The pieces and fragments of the triangles [first, last) of the frame.
 struct Group {
   explicit Group(MemoryAccount& memory)
       : pieces(memory), by_bin(memory), fragments(memory), small(memory), deferred(memory) {}
 
   Pieces pieces;
-  std::uint32_t binned = 0;  ///< pieces whose pairs are, or were, in by_bin or deferred
+  std::uint32_t binned = 0;  ///< pieces whose pairs are or were in by_bin or deferred
   BinLists<PieceInBin> by_bin;
   BinLists<BinFragment> fragments;
-  BinLists<BinTriangle> small;       ///< only where lists ask for them; numbered as by_bin
-  BinLists<DeferredInBin> deferred;  ///< only where lists defer
+  BinLists<BinTriangle> small;       ///< if lists ask for them; numbered as by_bin
+  BinLists<DeferredInBin> deferred;  ///< if lists defer
 
   [[nodiscard]] bool is_empty(const BinTable& lists, std::size_t bin) const {
     return by_bin.bin(bin).empty() && fragments.bin(bin).empty() &&
@@ -78,29 +76,29 @@ struct BinLoad {
   std::uint64_t pieces = 0, fragments = 0;
 };
 
-/// Sets up and bins the triangles of a view. Keeps its memory.
-/// Work O(triangles + (bin, piece) pairs); memory 48 bytes a drawn triangle and 8 a
-/// pair, or 32 for each bin of a small one; 16 a fragment of a micro triangle.
+/// Sets up and bins the triangles of a view. Keeps its memory. Work O(triangles + (bin, piece)
+/// pairs). Memory: 48 bytes a drawn triangle and 8 a pair; a small one 32 a bin; 16 a fragment of a
+/// micro triangle.
 class TriangleGroups {
  public:
   explicit TriangleGroups(MemoryAccount& memory);
   TriangleGroups(TriangleGroups&&) = delete;
   ~TriangleGroups();
 
-  /// Fills groups with the pieces of triangles [first, last), with fragments where `micro` asks for
-  /// those of micro triangles, and with pairs as far as FrameContext::expansion_bytes leaves room;
-  /// the rest is for bin_more. Returns nothing if they take more than FrameContext::view_bytes.
-  /// Counts "bins" (pairs) and "micro fragments", and sets FrameContext::clips. Throws
-  /// Error{invalid_argument} naming an index that is out of range.
+  /// Fills groups with the pieces of triangles [first, last), with fragments of micro triangles if
+  /// `micro`, and with pairs as far as FrameContext::expansion_bytes allows; the rest is for
+  /// bin_more. Returns nothing if they take more than FrameContext::view_bytes. Counts "bins"
+  /// (pairs) and "micro fragments", and sets FrameContext::clips. Throws Error{invalid_argument}
+  /// naming an index that is out of range.
   [[nodiscard]] std::optional<std::span<Group>> set_up(FrameContext& frame, const BinTable& lists,
                                                        bool micro, std::uint64_t first,
                                                        std::uint64_t last);
-  /// The same for runs, in groups that hold whole ones.
+  /// The same for runs, each whole in one group.
   [[nodiscard]] std::optional<std::span<Group>> set_up(FrameContext& frame, const BinTable& lists,
                                                        bool micro, std::span<const SetupRun> runs);
   /// Replaces pairs and fragments by the next pairs.
   void bin_more(FrameContext& frame, const BinTable& lists, std::span<Group> groups);
-  /// How much set_up, or bin_more after it, has put into a bin.
+  /// How much the last set_up or bin_more put into a bin.
   [[nodiscard]] BinLoad load(std::size_t bin) const {
     return {loads_[bin].pieces.load(std::memory_order_relaxed),
             loads_[bin].fragments.load(std::memory_order_relaxed)};
@@ -111,13 +109,12 @@ class TriangleGroups {
 
  private:
   struct Filler;
-  /// Added to by all threads that fill groups.
+  /// All threads that fill groups add to it.
   struct Load {
     std::atomic<std::uint64_t> pieces, fragments;
   };
   void begin_loads(const BinTable& lists);
   void add_loads(const BinTable& lists, const Filler& filler, bool alone);
-  /// fill(g, pieces, way) sets up the triangles of group g.
   template <class Fill>
   std::optional<std::span<Group>> set_up(FrameContext& frame, const BinTable& lists, bool micro,
                                          std::size_t group_count, const Fill& fill);
@@ -126,38 +123,36 @@ class TriangleGroups {
   std::vector<Group> groups_;
   std::unique_ptr<Load[]> loads_;
   std::size_t load_count_ = 0;
-  std::vector<std::size_t> first_run_;  ///< of each group, and one more
+  std::vector<std::size_t> first_run_;  ///< of each group, and one past the last
   parallel::ScratchPool<Filler> fillers_;
 };
 
-/// Fewer pieces that are drawn later are not worth a look at what hides them.
+/// With fewer pieces in the later list, testing what hides them does not pay.
 inline constexpr std::size_t kWorthALook = 16;
 
-/// Takes what groups have in a bin.
 template <class S>
 concept BinSink = requires(S& sink, const Piece* pieces, std::size_t n, Rect bin,
                            std::span<const BinFragment> fragments) {
-  sink.use(pieces);                                   // those that the blocks that follow refer to
-  { sink.room() } -> std::same_as<std::span<Block>>;  // kBlocksPerBin blocks or more,
-  sink.written(n);                                    // of which so many were filled
-  { sink.bounds() } -> std::same_as<DepthBounds*>;    // what hides, or null
-  sink.find_bounds();                                 // brings that up to date
+  sink.use(pieces);                                   // pieces of the blocks that follow
+  { sink.room() } -> std::same_as<std::span<Block>>;  // room for kBlocksPerBin blocks or more
+  sink.written(n);                                    // so many were filled
+  { sink.bounds() } -> std::same_as<DepthBounds*>;    // what hides pieces, or null
+  sink.find_bounds();                                 // updates the bounds
   sink.fragments(bin, fragments);                     // finished keys
-  sink.flush();                                       // hands on the blocks that were collected
+  sink.flush();                                       // hands on the collected blocks
 };
-/// A sink whose room may be filled with windows, by the function that it names; null: with blocks.
+/// A sink whose room that function may fill with windows; null: with blocks.
 template <class S>
 concept WindowSink = BinSink<S> && requires(S& sink) {
   { sink.windows() } -> std::same_as<CoverWindows>;
 };
-/// A sink with rows where small triangles may go (null: not now), and which draws lists of them.
+/// A sink with rows for small triangles (null: not now), which draws lists of them.
 template <class S>
 concept RowSink = BinSink<S> && requires(S& sink, Rect rect, std::span<const BinTriangle> some) {
   { sink.rows() } -> std::same_as<RowKeys*>;
-  sink.small(rect, rect, some);  // the whole bin, the part of it that is drawn
+  sink.small(rect, rect, some);  // the whole bin, and the part of it that is drawn
 };
 
-/// Emits the fragments of a bin that lie in the part `rect` of it.
 template <BinSink Sink>
 void emit_fragments(std::span<const BinFragment> fragments, Rect bin, Rect rect, Sink& sink) {
   if (fragments.empty()) return;
@@ -174,7 +169,6 @@ void emit_fragments(std::span<const BinFragment> fragments, Rect bin, Rect rect,
   if (n != 0) sink.fragments(bin, {inside, n});
 }
 
-/// Enumerates the pieces of a list, as far as they touch `rect`.
 template <BinSink Sink>
 void enumerate_pieces(const FrameContext& frame, const Group& group, std::size_t list_number,
                       Rect rect, Sink& sink) {
@@ -193,20 +187,20 @@ void enumerate_pieces(const FrameContext& frame, const Group& group, std::size_t
     if constexpr (RowSink<Sink>) rows = sink.rows();
     sink.written(
         frame.kernel.cover(pieces, cursor, rect, room.data(), room.size(), sink.bounds(), rows));
-    // Draws these first, so that the pieces that they hide are left out of the rest.
+    // Draws these first, so that the rest omits pieces that they hide.
     if (rows != nullptr && cursor < pieces.count) sink.flush();
   }
-  // Groups number their pieces from 0 each.
+  // Each group numbers its pieces from 0.
   sink.flush();
 }
 
-/// Enumerates what groups have in the lists of a bin, or in the part `rect` of it.
+/// Enumerates what groups have in a bin's lists, or in its part `rect`.
 template <BinSink Sink>
 void enumerate_bin(const FrameContext& frame, const BinTable& lists, std::span<const Group> groups,
                    std::size_t bin, Rect rect, Sink& sink) {
   const Rect whole = lists.bins.rect(bin);
-  // A list of fragments is a few lines of a cache that were written long ago, too short for a
-  // machine to see what comes next.
+  // A list of fragments is a few cache lines, written long ago and too short for hardware
+  // prefetching.
   constexpr std::size_t kListsAhead = 4, kMostBytes = 1024, kLineBytes = 64;
   std::size_t later = 0;
   for (std::size_t g = 0; g < groups.size(); ++g) {

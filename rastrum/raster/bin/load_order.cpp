@@ -8,8 +8,8 @@
 namespace rastrum::raster {
 namespace {
 
-/// Fractions of a thread's share: an item above 1 / kLarge is a task of its own, small items make
-/// tasks of 1 / kTogether together.
+/// Fractions of a thread's share: an item above 1 / kLarge is a task of its own; small items
+/// together make tasks of 1 / kTogether.
 constexpr std::uint64_t kLarge = 8, kTogether = 32;
 
 }  // namespace
@@ -20,7 +20,7 @@ void LoadOrder::arrange(std::span<const std::uint64_t> loads, int threads) {
   std::uint64_t total = 0;
   for (const std::uint64_t load : loads) total += load;
   const std::uint64_t share = total / static_cast<std::uint64_t>(threads);
-  // A load that is twice as large has one more digit.
+  // Twice the load has one more digit.
   const auto digits = [&](std::uint64_t load) {
     return threads == 1 || load <= share / kLarge ? 0U
                                                   : static_cast<unsigned>(std::bit_width(load));

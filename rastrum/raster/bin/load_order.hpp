@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// In which order threads take tasks of different size that lie beside each other.
+// The order in which threads take neighbouring tasks of different size.
 #pragma once
 
 #include <cstddef>
@@ -9,18 +9,16 @@
 
 namespace rastrum::raster {
 
-/// Items become tasks, to be begun one after the other by whoever is free (for_each_in_order).
-/// Items of more than an eighth of a thread's share of everything are a task each, the largest
-/// first, by powers of two; what is smaller goes in the order of its numbers, some together.
-/// Neighbours share what they read: a brain of a million triangles took 15 % longer with all its
-/// bins by load. Keeps its memory.
+/// Makes tasks of items, which free threads begin in order (for_each_in_order). Items above an
+/// eighth of a thread's share are a task each, the largest first, by powers of two. Smaller items
+/// follow in their order, some together, because neighbours share what they read: a brain of a
+/// million triangles took 15 % longer with all bins ordered by load. Keeps its memory.
 class LoadOrder {
  public:
-  /// Work O(items). One thread: each item a task, in order.
+  /// Work O(items). With one thread each item is a task, in order.
   void arrange(std::span<const std::uint64_t> loads, int threads);
 
   [[nodiscard]] std::size_t tasks() const { return begin_.empty() ? 0 : begin_.size() - 1; }
-  /// The items of a task.
   [[nodiscard]] std::span<const std::uint32_t> task(std::size_t i) const {
     return {items_.data() + begin_[i], begin_[i + 1] - begin_[i]};
   }

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A view in tiles.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +13,7 @@ namespace rastrum::raster {
           a.y1 < b.y1 ? a.y1 : b.y1};
 }
 
-/// Tiles of the screen, numbered row by row.
+/// Numbered row by row.
 struct TileGrid {
   Rect view;
   int tile_px = kBlockSize;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A method of transparency that another library adds. A frame names it by
-// TransparencyOptions::added; nothing of Rastrum knows which there are.
+// TransparencyOptions::added; Rastrum itself knows none.
 #pragma once
 
 #include <memory>
@@ -16,17 +16,15 @@ class LayerBlend;  // transparency/blend.hpp
 }
 
 struct AddedTransparency {
-  /// Blends the layers of a frame with these options.
   std::unique_ptr<transparency::LayerBlend> (*make)(const TransparencyOptions& options, Isa isa);
-  /// Over how many fragments of a pixel an insertion looks back, without repair; 0: every fragment
-  /// has its place.
+  /// How many fragments of a pixel an insertion looks back over, without repair. 0: every fragment
+  /// finds its place.
   int filter = 0;
-  std::string_view why_host;  ///< why the CPU draws it where a device was asked for
+  std::string_view why_host;  ///< why the CPU draws it though a device was asked for
 };
 
 namespace transparency {
 
-/// AddedTransparency::filter of the frame's method.
 [[nodiscard]] inline int filter_of(const TransparencyOptions& options) {
   return options.method == Transparency::added ? options.added->filter : 0;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Named counters of a method's own work: what tells the rows of a table from one.
+// Named counters of a method's work, by which the rows of a table differ.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,8 @@ namespace rastrum::raster {
 
 using Counters = std::vector<std::pair<std::string_view, std::uint64_t>>;
 
-/// Adds to the counter of that name.
 void add_counter(Counters& counters, std::string_view name, std::uint64_t value);
-/// Makes the counter of that name at least `value`.
+/// Makes the counter at least `value`.
 void raise_counter(Counters& counters, std::string_view name, std::uint64_t value);
 
 }  // namespace rastrum::raster

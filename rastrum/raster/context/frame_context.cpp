@@ -6,7 +6,6 @@
 namespace rastrum::raster {
 namespace {
 
-/// Vertices of a task.
 constexpr std::size_t kProjectGrain = 4096;
 
 }  // namespace

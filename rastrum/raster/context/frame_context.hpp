@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The stages of a frame read this: the request, the projected scene, who works, and how much memory
-// they may take. FrameRun (frame/frame_run.hpp) runs the stages.
+// The stages of a frame read this: the request, the projected scene, the threads and the memory
+// limits. FrameRun (frame/frame_run.hpp) runs the stages.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@
 
 namespace rastrum::raster {
 
-/// The parts of a frame for code that draws and blends the blocks of a bin. All outlive its use.
+/// The parts of a frame that drawing and blending a bin's blocks needs. All outlive its use.
 struct BinContext {
   const FrameRequest* request = nullptr;
   const FramePlan* plan = nullptr;
@@ -30,35 +30,33 @@ struct FrameContext {
   FrameRequest& request;
   const FramePlan& plan;
   FrameGeometry geometry;
-  /// The memory that `geometry` reads, writable: vertices of clusters are projected into it later.
+  /// Writable memory of `geometry`: vertices of clusters are projected later.
   ProjectedVertex* projected = nullptr;
   const Kernels& kernel;
   parallel::Threads* const threads;  ///< null: the serial reference
   FrameStats& stats;
   Stopwatch& watch;
 
-  Rect view{};             ///< what is being drawn: the image or a part of it
+  Rect view{};             ///< the image, or the part of it that is drawn now
   bool first_band = true;  ///< triangles are counted once
-  /// Most that fragments may take at once, over all threads; 0: no limit.
+  /// Most bytes of fragments at once, over all threads; 0: no limit.
   std::uint64_t fragment_bytes = 0;
-  /// Most that triangles may be expanded to (rows, bins, pairs) at once; 0: no limit.
+  /// Most bytes that triangles are expanded to (rows, bins, pairs) at once; 0: no limit.
   std::uint64_t expansion_bytes = 0;
-  /// Most that the pieces of a view, and what they are expanded to, may take at once where all have
-  /// to be there (Needs::whole_view); 0: no limit.
+  /// Most bytes of a view's pieces and what they are expanded to, where all must be there at once
+  /// (Needs::whole_view); 0: no limit.
   std::uint64_t view_bytes = 0;
   bool clips = true;  ///< some triangle of the view may have been clipped
   Counters counters{};
 
-  /// Whether there is a limit on the pieces of a view or on what triangles are expanded to.
   [[nodiscard]] bool plans_memory() const { return view_bytes != 0 || expansion_bytes != 0; }
   [[nodiscard]] int concurrency() const { return threads == nullptr ? 1 : threads->concurrency(); }
-  /// f(i) for i in [0, n), by all threads.
   template <class F>
   void for_each_index(std::size_t n, F&& f) const {
     if (threads != nullptr) return parallel::for_each_index(*threads, n, f);
     for (std::size_t i = 0; i < n; ++i) f(i);
   }
-  /// The same, begun in increasing order: the largest first.
+  /// The same, begun in increasing order, so that the largest can go first.
   template <class F>
   void for_each_in_order(std::size_t n, F&& f) const {
     if (threads != nullptr) return parallel::for_each_in_order(*threads, n, f);
@@ -66,7 +64,7 @@ struct FrameContext {
   }
   void count(std::string_view name, std::uint64_t value) { add_counter(counters, name, value); }
 
-  /// Projects all vertices of a draw to their places (Draw::first_vertex).
+  /// Projects all vertices of a draw (to Draw::first_vertex on).
   void project(Draw& draw) const;
 };
 

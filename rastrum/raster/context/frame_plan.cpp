@@ -24,7 +24,7 @@ Backdrop backdrop_of(Vec4 b, bool linear_light) {
 }
 
 FramePlan FramePlan::of(const FrameRequest& request, bool method_shades, bool limits_memory) {
-  // Last-level caches of today hold smaller pictures until they are read next.
+  // Last-level caches hold smaller pictures until they are read next.
   constexpr std::uint64_t kLarge = std::uint64_t{24} << 20;
   const Targets& t = request.targets;
   FramePlan plan;
@@ -49,7 +49,7 @@ FramePlan FramePlan::of(const FrameRequest& request, bool method_shades, bool li
                      kLarge;
   plan.colors = Colors::method;
   if (method_shades) return plan;
-  // The plan of a memory limit does not count a bin's triangles. Normals are filled by block.
+  // The memory limit's plan does not count a bin's triangles. Normals are filled by block.
   const bool by_bin = !limits_memory && !request.pass.load && !has_extra && !plan.normals;
   plan.colors = by_bin ? Colors::bin : Colors::block;
   plan.at_once = t.color.empty() && t.linear.empty() && !has_extra && !plan.normals &&

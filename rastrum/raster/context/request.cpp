@@ -33,7 +33,7 @@ std::uint64_t FrameRequest::kept(const FrameGeometry& frame, const Piece& piece,
       const int x = block.bx * kBlockSize + i % kBlockSize;
       const int y = block.by * kBlockSize + i / kBlockSize;
       const float behind = targets.depth(x, y);
-      // Where nothing is (depth 0) every fragment is drawn, one of depth 0, too.
+      // Where nothing is (depth 0) every fragment is drawn, even one of depth 0.
       if (behind > 0 && !(depth_at(piece, x, y) > behind)) nearer.mask ^= std::uint64_t{1} << i;
     }
   if ((piece.flags & kCut) != 0) nearer.mask = in_front(frame, piece, nearer, points);

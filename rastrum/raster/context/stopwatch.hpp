@@ -15,7 +15,7 @@ class Stopwatch {
   [[nodiscard]] double elapsed_ms() const {
     return std::chrono::duration<double, std::milli>(Clock::now() - start_).count();
   }
-  /// Ends the stage that began where the last one ended (or with the frame).
+  /// Ends the stage that began where the last one ended, or with the frame.
   void lap(FrameStats& stats, std::string stage) {
     const double now = elapsed_ms();
     stats.stages.push_back({std::move(stage), stats.frame_ms, now});

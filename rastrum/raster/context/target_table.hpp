@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The table of a frame's images: one row an image, and every list of images is made from it. A new
-// output is a member of Targets, a row here, and the function that fills it
-// (resolve/surfaces.cpp).
+// The table of a frame's images, one row each, from which every list of images is made. A new
+// output is a member of Targets, a row here, and a function that fills it (resolve/surfaces.cpp).
 #pragma once
 
 #include <cstdint>
@@ -16,18 +15,17 @@
 
 namespace rastrum::raster {
 
-/// The subject of an image.
 enum class TargetKind : std::uint8_t {
-  color,     ///< what is shaded; where nothing is, the background
-  key,       ///< what visibility keys tell
+  color,     ///< the shaded colour; the background where nothing is
+  key,       ///< what keys tell
   count,     ///< all fragments, hidden or not
-  number,    ///< the surface at the pixel; programs have these, too
-  surface,   ///< the surface at the pixel, of a scene alone
-  normal,    ///< the same: its normal, or what follows from it
-  distance,  ///< the same; where nothing is, FrameOptions::no_distance
+  number,    ///< number of the surface at the pixel; programs have these, too
+  surface,   ///< property of the surface at the pixel; scenes only
+  normal,    ///< its normal, or what follows from it
+  distance,  ///< its distance; FrameOptions::no_distance where nothing is
 };
 
-/// The drawers that have an image beside the renderer on the CPU.
+/// The drawers that make an image, beside the CPU's renderer.
 enum class TargetUsers : std::uint8_t {
   cpu,
   ranks,             ///< also several ranks
@@ -37,14 +35,14 @@ enum class TargetUsers : std::uint8_t {
 
 template <class T>
 struct TargetRow {
-  std::string_view name;  ///< of the member of Targets, as messages have it
+  std::string_view name;  ///< of Targets' member, as messages use it
   ImageView<T> Targets::*image;
   TargetKind kind;
-  T empty;  ///< a pixel where nothing is, where `kind` does not say another value
+  T empty;  ///< a pixel where nothing is, unless `kind` says another value
   TargetUsers users;
-  std::string_view python;  ///< its name in the Python package; empty: it has none there
-  std::string_view file{};  ///< NAME of the program's `--image NAME=FILE`; empty: it has none
-  /// The same numbers in 32 bits; null: there are none.
+  std::string_view python;  ///< name in the Python package; empty: not there
+  std::string_view file{};  ///< NAME of the program's `--image NAME=FILE`; empty: not there
+  /// The same numbers in 32 bits, or null.
   ImageView<std::int32_t> Targets::*narrow = nullptr;
 
   [[nodiscard]] constexpr bool has_ranks() const {
@@ -53,18 +51,17 @@ struct TargetRow {
   [[nodiscard]] constexpr bool has_device() const {
     return users == TargetUsers::device || users == TargetUsers::ranks_and_device;
   }
-  /// Whether it describes the surface at a pixel, so that the host fills it. Numbers of 32 bits are
-  /// the host's, too.
+  /// Whether the host fills it: properties of the surface at a pixel, and numbers of 32 bits.
   [[nodiscard]] constexpr bool is_of_surface() const {
     return kind >= TargetKind::number || std::is_same_v<T, std::int32_t>;
   }
   [[nodiscard]] constexpr bool needs_scene() const { return kind >= TargetKind::surface; }
 };
 
-/// The value of Targets::scalars where there is no number.
+/// Targets::scalars where there is no number.
 inline constexpr float kNoNumber = std::numeric_limits<float>::quiet_NaN();
 
-/// Calls f(row) for each image, with the TargetRow of its pixels' type.
+/// Calls f(row) for each image.
 template <class F>
 constexpr void for_each_target(F&& f) {
   using enum TargetKind;
@@ -97,7 +94,6 @@ constexpr void for_each_target(F&& f) {
   f(TargetRow<std::uint8_t>{"errors", &T::errors, count, 0, cpu, {}});
 }
 
-/// The value of a pixel where nothing is.
 template <class T>
 [[nodiscard]] constexpr T empty_pixel(const TargetRow<T>& row, float no_distance) {
   if constexpr (std::is_same_v<T, float>)
@@ -105,7 +101,6 @@ template <class T>
   return row.empty;
 }
 
-/// Whether `t` has an image of which pred(row) is true.
 template <class Pred>
 [[nodiscard]] bool has_target(const Targets& t, const Pred& pred) {
   bool any = false;
@@ -113,14 +108,13 @@ template <class Pred>
   return any;
 }
 
-/// A view of an image of the part `at` of a picture, in which pixels have the picture's places.
+/// The part `at` of a picture as a view in which pixels have the picture's places.
 template <class T>
 [[nodiscard]] ImageView<T> placed(const ImageView<T>& part, const Rect& at) {
   if (part.empty()) return part;
   return {part.data - at.y0 * part.stride - at.x0, at.x1, at.y1, part.stride};
 }
 
-/// Whether some image describes the surface at a pixel (resolve/surface_point.hpp).
 [[nodiscard]] inline bool wants_surface(const Targets& t) {
   return has_target(t, [](const auto& row) { return row.is_of_surface(); });
 }

@@ -10,15 +10,14 @@
 namespace rastrum::raster {
 namespace {
 
-/// After so many pieces that cover a block in part its keys are looked at: one such look costs
-/// about as much as drawing a dozen samples, and where a surface of small triangles covers a
-/// pixel once or twice there is nothing to find. (Counting their samples instead cost 3 % of a
-/// frame.)
+/// A block's depth bound is updated after so many pieces that cover it in part. That costs about as
+/// much as drawing a dozen samples, and finds nothing where small triangles cover each pixel once
+/// or twice. (Counting samples instead cost 3 % of a frame.)
 constexpr std::uint32_t kLook = 32;
-/// The same for what comes from front to back, where there is more to be found.
+/// The same for pieces from front to back, which hide more.
 constexpr std::uint32_t kLookInOrder = 2;
 
-/// To grow a box in `rect` from.
+/// An empty box in `rect` that can grow.
 Rect nothing_of(Rect rect) {
   return {rect.x1, rect.y1, rect.x0, rect.y0};
 }
@@ -43,7 +42,7 @@ void BinKeys::begin(const Kernels& kernel, const SurfaceView& surface, Rect rect
     rows_->fragments = 0;
     std::fill_n(rows_->unseen, kBlocksPerBin, 0U);
   }
-  // Blocks outside of the image, or of the part of a bin, hide everything.
+  // Blocks outside of the image or of the bin's part hide everything.
   for (int i = 0; i < kBlocksPerBin; ++i)
     if (i % kBlocksPerBinRow >= block_columns(rect) || i / kBlocksPerBinRow >= block_rows(rect))
       bounds_.block[i] = 1;
@@ -63,7 +62,7 @@ void BinKeys::fragments(std::span<const BinFragment> fragments) {
   }
   for (const BinFragment& f : fragments) {
     const auto block = static_cast<int>(f.pixel / 64);
-    // The region may be a part of the bin that the fragments count from.
+    // Fragments count from the bin's first pixel; the surface may be a part of the bin.
     const int bx0 = surface_.bx0 / kBlocksPerBinRow * kBlocksPerBinRow;
     const int by0 = surface_.by0 / kBlocksPerBinRow * kBlocksPerBinRow;
     std::uint64_t& key = surface_.block(bx0 + block % kBlocksPerBinRow,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The keys of a bin that a thread owns: plain maxima, and beside them what is hidden by now
-// (hierarchical Z), so that pieces and blocks behind it are left out before they are covered.
+// The keys of a thread's bin: plain maxima, with bounds of what is hidden (hierarchical Z), so that
+// pieces and blocks behind them are left out before they are covered.
 #pragma once
 
 #include <cstddef>
@@ -15,40 +15,39 @@ namespace rastrum::raster {
 
 class BinKeys {
  public:
-  /// `surface` holds what was drawn before in `rect`, a bin or a part of one, and is raised.
-  /// `hides`: bounds are kept. `rows`: memory for the keys of small triangles' rows, which reach
-  /// the surface by finish(); null: there are none.
+  /// Raises `surface`, which has what was drawn before in `rect`, a bin or a part of one. `hides`:
+  /// keeps bounds. `rows`: memory for the rows of small triangles, which reach the surface by
+  /// finish(); null: none.
   void begin(const Kernels& kernel, const SurfaceView& surface, Rect rect, bool hides,
              RowKeys* rows = nullptr);
 
-  /// No mask is empty and none reaches outside of the image.
+  /// No mask is empty or reaches outside of the image.
   void blocks(const Piece* pieces, std::span<const Block> blocks);
-  /// Fragments whose key is known already, by their places in the bin.
+  /// Fragments with known keys, by their places in the bin.
   void fragments(std::span<const BinFragment> fragments);
-  /// Where a kernel may put small triangles, or null.
   [[nodiscard]] RowKeys* rows() const { return rows_; }
-  /// Looks at what a kernel has raised the rows by; returns how many samples it covered.
+  /// Updates bounds after a kernel raised the rows. Returns the number of samples covered.
   std::uint64_t rows_raised();
-  /// Nothing more is drawn: the surface has all keys.
+  /// Nothing more is drawn: moves all keys to the surface.
   void finish() {
     if (rows_ != nullptr) take_rows();
   }
-  /// Notes that a kernel has raised the surface's keys, and by how much.
+  /// Notes that a kernel has raised the surface's keys.
   void raised(const RaisedKeys& raised);
   [[nodiscard]] const SurfaceView& surface() const { return surface_; }
-  /// Counts pieces that the caller has left out because they are hidden.
+  /// Counts pieces that the caller left out.
   void hid_pieces(std::uint64_t n) { bounds_.hidden_pieces += n; }
 
-  /// Null where nothing is known.
+  /// Null: no bounds are kept.
   [[nodiscard]] DepthBounds* bounds() { return is_bounded_ ? &bounds_ : nullptr; }
-  /// Brings them up to date. Costs a look at all keys: for where much may be hidden.
+  /// Updates all bounds from all keys. Worth it where much may be hidden.
   void find_bounds();
   /// Adds "hidden pieces" and "hidden blocks" since the last call.
   void collect(Counters& counters);
 
  private:
   void take_rows();
-  /// Where the keys of a block begin in the rows.
+  /// The first key of a block in the rows.
   [[nodiscard]] std::uint64_t* rows_of(int bx, int by) const;
   void raise_bounds(const Piece* pieces, std::span<const Block> blocks);
   void look(int i);

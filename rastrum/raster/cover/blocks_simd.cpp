@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Operations on the keys of 8 × 8 blocks, with Highway, compiled once per instruction set: the
-// maximum and the way to 8-bit colours. Each repeats the operations of its scalar twin
-// (make_piece.hpp, color.hpp) in the same order, so it gives the same bits.
+// Operations on the keys of 8 × 8 blocks with Highway, compiled once per instruction set: the
+// maximum and the conversion to 8-bit colours, with the scalar forms' operations, order and bits
+// (make_piece.hpp, color.hpp).
 
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
@@ -25,7 +25,7 @@ HWY_BEFORE_NAMESPACE();
 namespace rastrum::raster::HWY_NAMESPACE {
 namespace {  // several sources have an N_AVX2
 
-/// The depths of row `row` of a block, column part by part: the depth formula, lane by lane.
+/// The depths of a block's rows, by parts of columns: the depth formula in lanes.
 struct DepthRows {
   F along_x[8 / kLanes];
   float y0, zy;
@@ -51,7 +51,7 @@ struct DepthRows {
   }
 };
 
-/// One bit for every kLanes64 samples: the first, where `mask` has any of them.
+/// For each kLanes64 samples with some in `mask`, the bit of the first.
 HWY_INLINE std::uint64_t parts_of(std::uint64_t mask) {
   mask |= mask >> 1;
   if constexpr (kLanes64 == 4) mask |= mask >> 2;
@@ -81,7 +81,7 @@ HWY_INLINE void raise(const Piece& p, const Block& block, std::uint64_t* out) {
   const hn::CappedTag<std::int64_t, 8> d64;
   const hn::Half<hn::RebindToSigned<hn::CappedTag<float, 16>>> dh;
   const auto lane = hn::Iota(di, 0);
-  // The depth formula, lane by lane: its parts by column and by row.
+  // The depth formula in lanes: its parts by column and by row.
   const auto px = [&](int first, hn::Vec<decltype(di)> more) HWY_ATTR {
     return hn::Add(hn::ConvertTo(d, hn::Add(hn::Set(di, first), more)), hn::Set(d, 0.5F));
   };
@@ -112,7 +112,7 @@ HWY_INLINE void raise(const Piece& p, const Block& block, std::uint64_t* out) {
   }
 }
 #else
-/// Goes by parts of a row as wide as a vector of keys: most masks have a few samples in each of a
+/// In parts of a row as wide as a vector of keys, since most masks have a few samples in each of a
 /// few rows.
 HWY_INLINE void raise(const Piece& p, const Block& block, std::uint64_t* out) {
   constexpr float kPxPerSubpixel = 1.0F / kSubpixels;
@@ -120,7 +120,7 @@ HWY_INLINE void raise(const Piece& p, const Block& block, std::uint64_t* out) {
   const hn::Half<F32> dh;
   const I64 d64;
   const F half_px = hn::Set(d, 0.5F);
-  // The depth formula, lane by lane: its parts by column and by row.
+  // The depth formula in lanes: its parts by column and by row.
   HWY_ALIGN float by_column[8], by_row[8];
   const auto fill = [&](float first_px, std::int32_t origin, float slope, float plus, bool adds,
                         float* to) HWY_ATTR {
@@ -239,9 +239,8 @@ void store_blended(const BlockColors& colors, std::uint64_t covered, const Backd
   (backdrop.linear ? store_over<true> : store_over<false>)(colors, covered, backdrop, out, stride);
 }
 
-/// Stores `columns` pixels at `to`: whole lines of a cache are streamed, both ends are stored.
-/// line(x) is the pixels from x on, rest(x, end) stores some. Without `kPast` whole lines are
-/// stored, too.
+/// Writes `columns` pixels at `to`: whole cache lines are streamed, both ends are stored. line(x)
+/// has the pixels from x on, rest(x, end) stores some. Without `kPast` whole lines are stored, too.
 using Line = hn::CappedTag<std::uint32_t, 16>;
 template <bool kPast = true, class Whole, class Rest>
 HWY_INLINE void stream_row(int columns, Rgba8* to, const Whole& line, const Rest& rest) {
@@ -249,7 +248,7 @@ HWY_INLINE void stream_row(int columns, Rgba8* to, const Whole& line, const Rest
   constexpr int kStep = static_cast<int>(hn::MaxLanes(Line()));
   constexpr int kLinePixels = 16;
   const auto address = reinterpret_cast<std::uintptr_t>(to);
-  if (address % sizeof(Rgba8) != 0) return rest(0, columns);  // no pixel begins a line
+  if (address % sizeof(Rgba8) != 0) return rest(0, columns);  // no pixel starts a line
   const auto first = static_cast<int>(address / sizeof(Rgba8) % kLinePixels);
   const int begin = std::min((kLinePixels - first) % kLinePixels, columns);
   const int end = begin + (columns - begin) / kLinePixels * kLinePixels;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coverage with Highway, compiled once per instruction set: the exact edge functions of
-// coverage.hpp, so the same masks. Triangles of a few pixels raise rows of keys, where there are
-// rows. Other pieces whose box has at most 8 × 8 samples are covered a piece a lane and then cut
-// along the blocks, or are windows (windows.hpp); the rest a block at a time.
+// Coverage with Highway, compiled once per instruction set, by coverage.hpp's exact edge functions
+// and so with its masks. Triangles of a few pixels raise rows of keys, if there are rows. Other
+// pieces with a box of at most 8 × 8 samples are covered one a lane and then cut along blocks, or
+// become windows (windows.hpp). The rest goes block by block.
 
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
@@ -77,25 +77,24 @@ HWY_INLINE std::uint64_t cover_block(const std::int32_t (&base)[3], const EdgeSt
   return mask;
 }
 
-/// An edge's value, as far as its sign is that of all samples of a block.
+/// An edge's value, clamped so that every sum in a block keeps its sign.
 HWY_INLINE std::int32_t clamped(std::int64_t value) {
   constexpr std::int64_t kClamp = std::int64_t{1} << 30;
   return static_cast<std::int32_t>(std::clamp(value, -kClamp, kClamp));
 }
 
-/// Whether every edge value at the samples of blocks that the piece's box touches fits int32: with
-/// differences up to 2^14 (64 px) and samples up to 8 px outside, |E| < 2 · 2^14 · (2^14 + 2^11) <
-/// 2^30.
+/// Whether all edge values at the samples of blocks in the piece's box fit int32: with differences
+/// up to 2^14 (64 px) and samples up to 8 px outside, |E| < 2 · 2^14 · (2^14 + 2^11) < 2^30.
 HWY_INLINE bool is_small(const Piece& p) {
   constexpr int kMost = 1 << 14;
   return max3(p.x[0], p.x[1], p.x[2]) - min3(p.x[0], p.x[1], p.x[2]) < kMost &&
          max3(p.y[0], p.y[1], p.y[2]) - min3(p.y[0], p.y[1], p.y[2]) < kMost;
 }
 
-/// The blocks of a row of a bin, a block a lane.
+/// A row of a bin's blocks, one a lane.
 constexpr std::size_t kRowParts = kBlocksPerBinRow / kLanes;
 
-/// Which blocks of a row a bin's depths hide: HiddenTest::hides_block in lanes.
+/// Which blocks of a row a bin's bounds hide: HiddenTest::hides_block in lanes.
 class HiddenRow {
  public:
   HWY_INLINE HiddenRow(const Piece& p, const DepthBounds* bounds, Rect bin, int bx0)
@@ -117,7 +116,7 @@ class HiddenRow {
     }
   }
   [[nodiscard]] bool hides() const { return bounds_ != nullptr; }
-  /// A bit for each block of part `part` of the row `by`, whose first is `bx`.
+  /// A bit for each block of part `part` of row `by`, from block `bx` on.
   HWY_INLINE std::uint32_t operator()(int bx, int by, std::size_t part) const {
     const F32 d;
     const float dy = (static_cast<float>(by * kBlockSize + below_) + 0.5F) - y0_;
@@ -125,7 +124,7 @@ class HiddenRow {
     const float* const at = bounds_->block +
                             (by * kBlockSize - bin_.y0) / kBlockSize * kBlocksPerBinRow +
                             (bx * kBlockSize - bin_.x0) / kBlockSize;
-    // Some of the last row's lie behind them all.
+    // The last row's load may reach beyond the array.
     HWY_ALIGN float own[kLanes] = {};
     const auto n = static_cast<std::size_t>(bounds_->block + kBlocksPerBin - at);
     if (HWY_UNLIKELY(n < kLanes)) std::copy_n(at, n, own);
@@ -143,8 +142,8 @@ class HiddenRow {
   int below_;
 };
 
-/// The blocks of a small piece, a row of blocks at a time: those that an edge leaves out or that
-/// are hidden are dropped, those that are inside of all edges are not looked at sample by sample.
+/// The blocks of a small piece by rows. Drops blocks that an edge excludes or that are hidden.
+/// Blocks inside of all edges are not tested by sample.
 template <class Add>
 HWY_INLINE void small_cover(const Piece& p, int bx0, int by0, int bx1, int by1, Rect bin,
                             DepthBounds* bounds, const Add& add) {
@@ -167,7 +166,7 @@ HWY_INLINE void small_cover(const Piece& p, int bx0, int by0, int bx1, int by1, 
   for (int by = by0; by <= by1; ++by) {
     for (std::size_t part = 0; part < parts; ++part) {
       const auto before = static_cast<std::int32_t>(part * kLanes);
-      I outside = hn::Zero(d), cut = hn::Zero(d);  // below 0 where it is so
+      I outside = hn::Zero(d), cut = hn::Zero(d);  // below 0: true
       for (int i = 0; i < 3; ++i) {
         const I first = hn::Add(hn::Set(d, row_base[i] + a[i] * kBlockSize * before),
                                 hn::Mul(hn::Set(d, a[i] * kBlockSize), hn::Iota(d, 0)));
@@ -199,7 +198,7 @@ HWY_INLINE void small_cover(const Piece& p, int bx0, int by0, int bx1, int by1, 
   }
 }
 
-/// A quadric of which something may be seen in `box`.
+/// For a quadric that may be visible in `box`.
 HWY_INLINE std::size_t cover_quadric_blocks(const Piece& piece, std::uint32_t index, Rect box,
                                             HiddenTest& hidden, Block* out) {
   std::size_t n = 0;
@@ -213,8 +212,8 @@ HWY_INLINE std::size_t cover_quadric_blocks(const Piece& piece, std::uint32_t in
   return n;
 }
 
-/// The quadric that a piece refers to is somewhere else, and was written long ago: waiting for it
-/// took half of the time of a million small spheres.
+/// Prefetches a piece's quadric, which lies elsewhere and was written long ago: waiting for it took
+/// half of the time of a million small spheres.
 HWY_INLINE void prefetch_quadric(const Piece& piece) {
   if (!is_quadric(piece)) return;
   const auto* const q = reinterpret_cast<const char*>(&quadric_of(piece));
@@ -222,8 +221,8 @@ HWY_INLINE void prefetch_quadric(const Piece& piece) {
   __builtin_prefetch(q + 64);
 }
 
-/// Pieces of a list are asked for so long before they are covered: they lie anywhere, half of them
-/// in two lines of a cache, and were written long ago.
+/// How long before its use a piece is prefetched. Pieces lie anywhere, half of them in two cache
+/// lines, and were written long ago.
 constexpr std::size_t kAhead = 16;
 HWY_INLINE void prefetch_piece(const PieceList& in, std::size_t i) {
   if (i >= in.count) return;
@@ -232,8 +231,8 @@ HWY_INLINE void prefetch_piece(const PieceList& in, std::size_t i) {
   __builtin_prefetch(p + sizeof(Piece) - 1);
 }
 
-/// Points and lines, the scalar way, and quadrics; apart, so that triangles do not pay for their
-/// code.
+/// Points and lines, by the scalar form, and quadrics. Out of line, so that triangles do not pay
+/// for this code.
 HWY_NOINLINE std::size_t cover_other(const Piece& piece, std::uint32_t index, Rect bin,
                                      HiddenTest& hidden, Block* out) {
   const Rect box = piece_bounds(piece, bin);
@@ -248,7 +247,7 @@ HWY_NOINLINE std::size_t cover_other(const Piece& piece, std::uint32_t index, Re
   return n;
 }
 
-/// A triangle whose box has more than 8 × 8 samples. Returns how many blocks it writes.
+/// For a triangle whose box exceeds 8 × 8 samples. Returns the number of blocks written.
 HWY_NOINLINE std::size_t cover_large(const Piece& piece, std::uint32_t index, Rect bin,
                                      DepthBounds* bounds, HiddenTest& hidden, Block* out) {
   const bool cut = bin.x1 % kBlockSize != 0 || bin.y1 % kBlockSize != 0;
@@ -276,9 +275,10 @@ HWY_NOINLINE std::size_t cover_large(const Piece& piece, std::uint32_t index, Re
         e.base + std::int64_t{e.a} * (bx0 * kBlockSize) + std::int64_t{e.b} * (by0 * kBlockSize);
     block_dx[i] = std::int64_t{e.a} * kBlockSize;
     block_dy[i] = std::int64_t{e.b} * kBlockSize;
-    // The largest value in a block, relative to its first sample: below 0 there, no sample is in.
+    // The largest value in a block relative to its first sample. If the sum is below 0, no sample
+    // is in.
     reach[i] = 7 * (std::int64_t{std::max(e.a, 0)} + std::max(e.b, 0));
-    // The smallest one: from 0 on, all samples are in.
+    // The smallest one. If the sum is at least 0, all samples are in.
     least[i] = 7 * (std::int64_t{std::min(e.a, 0)} + std::min(e.b, 0));
     steps[i].set(e.a, e.b);
   }
@@ -329,14 +329,13 @@ void bins(const Piece* pieces, std::size_t n, const BinNumbers& numbers,
   }
 }
 
-/// The pieces of kLanes lanes and their masks.
 struct SmallPieces {
   HWY_ALIGN std::int32_t x0[kLanes], y0[kLanes];        ///< the first sample of the box
   HWY_ALIGN std::uint32_t top[kLanes], bottom[kLanes];  ///< rows [0, half) and [half, 2 half)
   int half = 0;
-  std::uint32_t lanes = 0;  ///< those whose box has at most 8 × 8 samples; others are not set
+  std::uint32_t lanes = 0;  ///< boxes of at most 8 × 8 samples; other lanes are not set
 
-  /// Bit 8 · row + column, counted from the first sample.
+  /// Bit 8 · row + column, from the first sample on.
   [[nodiscard]] std::uint64_t mask(std::size_t lane) const {
     return top[lane] | std::uint64_t{bottom[lane]} << (kBlockSize * half);
   }
@@ -345,13 +344,13 @@ struct SmallPieces {
 using U16 = hn::Repartition<std::uint16_t, I32>;
 using I16 = hn::Repartition<std::int16_t, I32>;
 
-/// v in both halves of each lane, as 16 bits.
+/// v in both halves of each lane, in 16 bits.
 HWY_INLINE I twice(I low, I high) {
   return hn::Or(hn::And(low, hn::Set(I32{}, 0xFFFF)), hn::ShiftLeft<16>(high));
 }
 
-/// Rows [0, half) into `top` and [half, 2 half) into `bottom`, both at once in 16 bits, from the
-/// edges' values at the first sample.
+/// Computes rows [0, half) into `top` and [half, 2 half) into `bottom` together in 16 bits, from
+/// the edges' values at the first sample.
 template <int kColumns>
 HWY_INLINE void cover_rows(const I (&base)[3], const I (&a)[3], const I (&b)[3], int half, I& top,
                            I& bottom) {
@@ -360,7 +359,7 @@ HWY_INLINE void cover_rows(const I (&base)[3], const I (&a)[3], const I (&b)[3],
   const U16 du16;
   hn::Vec<I16> value[3], dx[3], dy[3];
   for (int i = 0; i < 3; ++i) {
-    // Backwards, so that shifting the collected bits left leaves the first column in bit 0.
+    // Backwards, so that shifting the bits left leaves the first column in bit 0.
     const I last = hn::Add(base[i], hn::Mul(a[i], hn::Set(d, kColumns - 1)));
     value[i] = hn::BitCast(d16, twice(last, hn::Add(last, hn::Mul(b[i], hn::Set(d, half)))));
     dx[i] = hn::BitCast(d16, twice(a[i], a[i]));
@@ -385,11 +384,11 @@ HWY_INLINE void cover_rows(const I (&base)[3], const I (&a)[3], const I (&b)[3],
   }
 }
 
-/// Covers kLanes pieces, whatever they are. Where the box has at most 8 × 8 samples, vertices and
-/// the 8 × 8 samples from its first one on lie in a square of less than 9 px, s = 2304 / 256 px. An
-/// edge's function at such a sample is twice the area of a triangle in that square, |E| ≤ s², so
-/// its products fit int32, and ⌊(E − 1) / 256⌋ ≥ −20,737 and its steps fit int16; sums on the way
-/// there may wrap, which is undone when they arrive.
+/// Covers kLanes pieces of any kind. Where a box has at most 8 × 8 samples, the vertices and the 8
+/// × 8 samples from its first on lie in a square of less than 9 px, s = 2304 / 256 px. An edge
+/// function there is twice the area of a triangle in that square, |E| ≤ s². So products fit int32,
+/// and ⌊(E − 1) / 256⌋ ≥ −20,737 and its steps fit int16. Intermediate sums may wrap, which the
+/// final sum undoes.
 HWY_INLINE void cover_small(const Triangles& t, SmallPieces& out) {
   const I32 d;
   const auto &x = t.x, &y = t.y;
@@ -411,7 +410,7 @@ HWY_INLINE void cover_small(const Triangles& t, SmallPieces& out) {
     base[i] =
         hn::ShiftRight<kSubpixelBits>(edge_lanes(a[i], b[i], hn::Sub(px, x[i]), hn::Sub(py, y[i])));
   }
-  // As many rows and columns as the largest box has.
+  // As many rows and columns as the largest box.
   const auto any_beyond = [&](I last, int n) HWY_ATTR {
     return (lane_bits(hn::Gt(last, hn::Set(d, n - 1))) & out.lanes) != 0;
   };
@@ -434,18 +433,17 @@ constexpr std::uint64_t columns(int k) {
   return (std::uint64_t{0xFF} >> k) * 0x0101010101010101U;
 }
 
-/// Cuts the mask of a small piece, counted from sample (x0, y0), along the blocks of `bin`, up to
-/// four. A bin that is drawn in parts has pieces that touch others of them alone. Out of line: it
-/// needs all registers.
+/// Cuts the mask of a small piece, from sample (x0, y0) on, along up to four blocks of `bin`. A bin
+/// drawn in parts has pieces that touch only other parts. Out of line: it needs all registers.
 HWY_NOINLINE std::size_t split_small(std::uint64_t mask, int x0, int y0, std::uint32_t index,
                                      const Rect& bin, Block* out) {
   static_assert(std::endian::native == std::endian::little);
   const int bx = x0 >> 3, by = y0 >> 3, sx = x0 & 7, sy = y0 & 7;
   const std::uint64_t keep = columns(sx);
-  // keep << sx are the columns of this block, so the others of the next one are its complement.
+  // This block has columns keep << sx, so the next block's others are its complement.
   std::uint64_t left = (mask & keep) << sx;
   std::uint64_t right = mask >> (8 - sx) & ~(keep << sx);
-  // Also where no sample of the box lies in `bin`, which may be a part of the one in the list.
+  // False also if no sample of the box is in `bin`, which may be a part of the list's bin.
   const auto is_between = [](int v, int begin, int end) {
     return static_cast<unsigned>(v - begin) < static_cast<unsigned>(end - begin);
   };
@@ -454,7 +452,7 @@ HWY_NOINLINE std::size_t split_small(std::uint64_t mask, int x0, int y0, std::ui
   const std::uint64_t rows = ~std::uint64_t{0} << (8 * sy);
   const std::uint64_t top = is_between(by * kBlockSize, bin.y0, bin.y1) ? rows : 0;
   const std::uint64_t bottom = is_between((by + 1) * kBlockSize, bin.y0, bin.y1) ? ~rows : 0;
-  // A Block's first half; sums, so that a negative bx takes from by what bx + 1 gives back.
+  // A Block's first half. With sums a negative bx borrows from by what bx + 1 returns.
   constexpr std::uint64_t kOneX = std::uint64_t{1} << 32, kOneY = std::uint64_t{1} << 48;
   const std::uint64_t at =
       index + static_cast<std::uint64_t>(bx) * kOneX + static_cast<std::uint64_t>(by) * kOneY;
@@ -473,7 +471,7 @@ HWY_NOINLINE std::size_t split_small(std::uint64_t mask, int x0, int y0, std::ui
   return n;
 }
 
-/// Leaves the samples in `bin`; returns how many blocks still have some.
+/// Keeps the samples in `bin`. Returns the number of blocks left.
 HWY_NOINLINE std::size_t cut_blocks(Rect bin, Block* blocks, std::size_t n) {
   std::size_t kept = 0;
   for (std::size_t i = 0; i < n; ++i) {
@@ -485,11 +483,11 @@ HWY_NOINLINE std::size_t cut_blocks(Rect bin, Block* blocks, std::size_t n) {
   return kept;
 }
 
-/// Vectors of the keys of a row; kLanes samples are one of them, or two.
+/// Vectors of a row's keys; kLanes samples make one or two.
 using Keys = hn::CappedTag<std::int64_t, kLanes>;
 constexpr std::size_t kKeys = hn::MaxLanes(Keys{});
 
-/// Part `part` of kLanes numbers, in 64 bits.
+/// Part `part` of kLanes numbers, widened to 64 bits.
 HWY_INLINE hn::Vec<Keys> widened(I v, [[maybe_unused]] std::size_t part) {
 #if HWY_MAX_BYTES >= 64
   return hn::PromoteTo(Keys{}, v);
@@ -499,9 +497,9 @@ HWY_INLINE hn::Vec<Keys> widened(I v, [[maybe_unused]] std::size_t part) {
 #endif
 }
 
-/// The box and the fragments of triangles so far, by lane.
+/// The box and the fragments of all triangles so far, by lane.
 struct RowTally {
-  I left, top, right, bottom;  ///< the box of all, the last inside
+  I left, top, right, bottom;  ///< box of all, inclusive
   std::uint64_t fragments = 0;
 
   HWY_INLINE explicit RowTally(Rect bin) {
@@ -511,7 +509,7 @@ struct RowTally {
     right = hn::Set(d, bin.x0 - 1);
     bottom = hn::Set(d, bin.y0 - 1);
   }
-  /// `x`, `y`: the place in the picture from which the box's numbers count.
+  /// `x`, `y`: the picture's pixel from which the box counts.
   HWY_INLINE void add_to(RowKeys& rows, int x = 0, int y = 0) const {
     const I32 d;
     Rect& box = rows.touched;
@@ -523,16 +521,15 @@ struct RowTally {
   }
 };
 
-/// kLanes triangles whose rows are raised as they are. If a box has up to 16 px, its vertices lie
-/// in a square of less than 18 px and the samples that are looked at in one of 24, so edge
-/// functions stay below 2^27.
+/// kLanes triangles that raise rows. With a box of up to 16 px the vertices lie in a square of less
+/// than 18 px and the tested samples in one of 24, so edge functions stay below 2^27.
 struct RowTriangles {
-  HWY_ALIGN std::int32_t a[3][kLanes], b[3][kLanes];  ///< what edges change by a pixel
+  HWY_ALIGN std::int32_t a[3][kLanes], b[3][kLanes];  ///< change of edges by a pixel
   HWY_ALIGN std::int32_t value[3][kLanes];            ///< at the first sample
-  HWY_ALIGN std::int32_t x0[kLanes], y0[kLanes], x1[kLanes], y1[kLanes];  ///< box; the last inside
-  HWY_ALIGN float x[kLanes], y[kLanes];  ///< of the first vertex, px
-  std::uint32_t lanes;                   ///< that are such triangles
-  std::uint32_t some;                    ///< those of them that have a sample in the bin
+  HWY_ALIGN std::int32_t x0[kLanes], y0[kLanes], x1[kLanes], y1[kLanes];  ///< box, inclusive
+  HWY_ALIGN float x[kLanes], y[kLanes];                                   ///< first vertex, px
+  std::uint32_t lanes;  ///< lanes with such triangles
+  std::uint32_t some;   ///< those that have a sample in the bin
 
   HWY_INLINE void find(const Triangles& t, std::uint32_t of, Rect bin, RowTally& tally) {
     const I32 d;
@@ -581,8 +578,8 @@ HWY_INLINE std::uint64_t low_of(const BinTriangle& t) {
   return kIdMask - t.id;
 }
 
-/// Raises the rows of a triangle. `outside` counts down the samples that are looked at and not
-/// covered; returns how many those are with the covered ones.
+/// Raises the rows of a triangle. `outside` counts down the tested samples that are not covered.
+/// Returns the number of tested samples.
 template <class Triangle>
 HWY_INLINE std::uint64_t raise_rows(const Triangle& p, const RowTriangles& t, std::size_t lane,
                                     Rect bin, std::uint64_t* keys, I& outside) {
@@ -608,7 +605,7 @@ HWY_INLINE std::uint64_t raise_rows(const Triangle& p, const RowTriangles& t, st
     // Columns beyond the box are outside in all rows: they may be another bin's.
     I e0 = hn::IfThenElse(hn::Gt(column, hn::Set(d, x1)), hn::Set(d, -(1 << 30)), edge(0));
     I e1 = edge(1), e2 = edge(2);
-    // The depth formula, lane by lane.
+    // The depth formula in lanes.
     const F along = hn::Add(z0, hn::Mul(zx, hn::Sub(hn::Add(hn::ConvertTo(df, column), half), x)));
     F sample_y = first_y;
     std::uint64_t* at = keys + static_cast<std::size_t>(y0 - bin.y0) * RowKeys::kRow +
@@ -637,8 +634,8 @@ HWY_INLINE std::uint64_t raise_rows(const Triangle& p, const RowTriangles& t, st
   return looked;
 }
 
-/// Counts a triangle for the look at its blocks: a small one where its box begins, one of more than
-/// a block in all of them, and as several, since it covers more of them.
+/// Counts a triangle for the next update of depth bounds: a small one in the block where its box
+/// begins, one larger than a block several times in all its blocks, since it covers more of them.
 HWY_INLINE void count_blocks(const RowTriangles& t, std::size_t lane, Rect bin, RowKeys& rows) {
   constexpr std::uint32_t kLarge = 8;
   const std::int32_t x0 = t.x0[lane] - bin.x0, x1 = t.x1[lane] - bin.x0;
@@ -652,7 +649,7 @@ HWY_INLINE void count_blocks(const RowTriangles& t, std::size_t lane, Rect bin, 
       rows.unseen[by * kBlocksPerBinRow + bx] += kLarge;
 }
 
-/// Raises the rows of those of `lanes`. Out of line: it needs all registers.
+/// Out of line: it needs all registers.
 template <class Triangle>
 HWY_NOINLINE void raise_rows(const Triangle* const (&pieces)[kLanes], const RowTriangles& t,
                              std::uint32_t lanes, Rect bin, RowKeys& rows, RowTally& tally) {
@@ -663,12 +660,12 @@ HWY_NOINLINE void raise_rows(const Triangle* const (&pieces)[kLanes], const RowT
     count_blocks(t, lane, bin, rows);
     looked += raise_rows(*pieces[lane], t, lane, bin, rows.keys, outside);
   }
-  // Each that is not covered has counted −1.
+  // Each sample that is not covered counted −1.
   const std::int64_t not_covered = hn::GetLane(hn::SumOfLanes(I32{}, outside));
   tally.fragments += looked + static_cast<std::uint64_t>(not_covered);
 }
 
-/// kLanes small triangles, as they lie in their bin.
+/// kLanes small triangles, relative to their bin.
 HWY_INLINE Triangles load_small(const BinTriangle* const (&lanes)[kLanes]) {
   const I32 d;
   I first[4], second[4];
@@ -689,7 +686,7 @@ HWY_INLINE Triangles load_small(const BinTriangle* const (&lanes)[kLanes]) {
 
 void raise_small(const BinTriangle* triangles, std::size_t n, int bin_x, int bin_y, Rect rect,
                  DepthBounds* bounds, RowKeys& rows) noexcept {
-  // All of it as seen from the bin's first pixel: differences of places are the same.
+  // Relative to the bin's first pixel: differences are the same.
   const Rect bin{rect.x0 - bin_x, rect.y0 - bin_y, rect.x1 - bin_x, rect.y1 - bin_y};
   const bool hides = bounds != nullptr && knows_depths(*bounds);
   SquareBounds squares;
@@ -714,11 +711,11 @@ void raise_small(const BinTriangle* triangles, std::size_t n, int bin_x, int bin
   tally.add_to(rows, bin_x, bin_y);
 }
 
-/// A bin's blocks take its rows in the time of some forty small triangles: fewer go by blocks.
+/// With fewer pieces, blocks are faster: a bin's blocks take its rows in the time of some forty
+/// small triangles.
 constexpr std::size_t kWorthRows = 32;
 
-/// The window of a small piece whose mask is counted from sample (x0, y0); none where no sample
-/// lies in `bin`.
+/// The window of a small piece with a mask from sample (x0, y0) on; none if no sample is in `bin`.
 HWY_INLINE std::size_t add_window(std::uint64_t mask, int x0, int y0, std::uint32_t index,
                                   const Rect& bin, Block* out) {
   int x = x0 - bin.x0, y = y0 - bin.y0;
@@ -727,7 +724,7 @@ HWY_INLINE std::size_t add_window(std::uint64_t mask, int x0, int y0, std::uint3
     if (std::min(right, down) <= 0 || std::min(x, y) <= -kBlockSize) return 0;
     if (right < kBlockSize) mask &= columns(kBlockSize - right);
     if (down < kBlockSize) mask &= ~std::uint64_t{0} >> (kBlockSize * (kBlockSize - down));
-    // It begins in the bin.
+    // Moves its start into the bin.
     if (x < 0) mask = mask >> -x & columns(-x);
     if (y < 0) mask >>= kBlockSize * -y;
     x = std::max(x, 0);
@@ -882,7 +879,7 @@ namespace rastrum::raster {
 
 namespace {
 
-/// All of them are blocks.
+/// All are blocks.
 std::size_t windows_scalar(const PieceList& in, std::size_t& cursor, Rect bin, Block* out,
                            std::size_t capacity, DepthBounds* bounds) noexcept {
   const std::size_t n = kernels(Isa::scalar).cover(in, cursor, bin, out, capacity, bounds, nullptr);

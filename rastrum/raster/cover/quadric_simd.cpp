@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coverage and depth of quadrics with Highway, compiled once per instruction set: the body that the
-// scalar form has (rules/quadric_depth.inl), several columns of a row at once.
+// Coverage and depth of quadrics with Highway, compiled once per instruction set: the scalar form's
+// body (rules/quadric_depth.inl), several columns of a row at once.
 
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
@@ -19,7 +19,7 @@ HWY_BEFORE_NAMESPACE();
 namespace rastrum::raster::HWY_NAMESPACE {
 namespace {  // several sources have an N_AVX2
 
-/// Where the samples of a block lie from the place of a quadric's piece, px.
+/// A block's samples relative to a quadric's place, px.
 struct QuadricSamples {
   double x0, y0;
 
@@ -35,8 +35,8 @@ struct QuadricSamples {
 constexpr int kStep = static_cast<int>(kLanes64);
 constexpr std::uint64_t kStepBits = (std::uint64_t{1} << kStep) - 1;
 
-/// Calls use(row, column, surface) for the steps of a row of block (bx, by) that hold a bit of
-/// `wanted`. The kind of quadric is looked up once.
+/// Calls use(row, column, surface) for the steps of block (bx, by) with a bit of `wanted`. Selects
+/// the kind of quadric once.
 template <class Use>
 HWY_INLINE void for_each_step(const Piece& piece, int bx, int by, std::uint64_t wanted,
                               const Use& use) {

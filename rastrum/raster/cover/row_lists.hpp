@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How long a call of Kernels::cover may be that raises rows (RowKeys).
+// Limits a call of Kernels::cover that raises rows (RowKeys).
 #pragma once
 
 #include <cstddef>
 
 namespace rastrum::raster {
 
-/// Pieces that Kernels::cover takes at once where it is given rows, so that who calls looks in
-/// between at what they hide and whether to stop: they need no room for blocks, which would end it.
+/// The most pieces that Kernels::cover takes at once with rows. They need no room for blocks, which
+/// would end the call, and between calls the caller updates bounds and checks for a stop.
 inline constexpr std::size_t kMostRowPieces = 4096;
 
 }  // namespace rastrum::raster

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Several samples at once with Highway, compiled once per instruction set: triangles raise the keys
-// of all samples of a bin, a vector of pixels times four samples each. Edge functions are those of
-// coverage.hpp and depths those of make_piece.hpp, at vertices that are moved as samples lie,
-// operation by operation, so they give the same bits.
+// of all samples of a bin, a vector of pixels times four samples each, with coverage.hpp's edge
+// functions and make_piece.hpp's depths at vertices moved for the samples, and with the same bits.
 
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
@@ -31,16 +30,16 @@ constexpr float kPxPerSubpixel = 1.0F / kSubpixels;
 /// Pixels of a vector, with four samples each.
 constexpr int kPixels = static_cast<int>(kLanes / 4);
 constexpr std::uint32_t kAllLanes = (1U << kLanes) - 1;
-/// Larger boxes, in px, are drawn block by block.
+/// Larger boxes (px) are drawn by blocks.
 constexpr int kMostColumns = 16, kMostRows = 16;
 
-/// Where the lanes of a vector lie: four samples of a pixel, then those of the next one.
+/// The places of a vector's lanes: four samples of a pixel, then the next pixel's.
 struct Lanes {
   HWY_ALIGN std::int32_t x[kLanes], y[kLanes];  ///< from their pixel's centre, n.8
   HWY_ALIGN std::int32_t from_first[kLanes];    ///< x from the first pixel's centre
   HWY_ALIGN float pixel[kLanes];                ///< 0, 1
-  HWY_ALIGN std::int32_t pixel_number[kLanes];  ///< the same
-  HWY_ALIGN std::int32_t place[kLanes];         ///< SampledKeys': 1 + the sample's number
+  HWY_ALIGN std::int32_t pixel_number[kLanes];  ///< the same as a whole number
+  HWY_ALIGN std::int32_t place[kLanes];         ///< as in SampledKeys: 1 + the sample's number
   std::int32_t offset_x[4], offset_y[4];
 
   explicit Lanes(const SampleOffset* four) {
@@ -55,7 +54,7 @@ struct Lanes {
   }
 };
 
-/// The depth formula's parts of a piece, for the vectors of a row.
+/// Parts of the depth formula for the vectors of a row.
 struct DepthLanes {
   F x0, y0;  ///< the moved first vertex, px
   F z0, zx, zy, pixel;
@@ -84,11 +83,10 @@ struct DepthLanes {
   }
 };
 
-/// Keys without places: `places` of raise().
 struct NoPlaces {};
 
-/// Raises the keys of a vector at `place` in the lanes of `inside`; `places`: SampledKeys', as
-/// unsigned lanes, or NoPlaces.
+/// Raises the keys at `place` in the lanes of `inside`. `places`: SampledKeys', as unsigned lanes,
+/// or NoPlaces for keys without.
 template <class Places>
 HWY_INLINE void raise(F depth, std::uint64_t low, [[maybe_unused]] Places places,
                       std::uint32_t inside, std::uint64_t* place) {
@@ -103,17 +101,17 @@ HWY_INLINE void raise(F depth, std::uint64_t low, [[maybe_unused]] Places places
   });
 }
 
-/// The places for lanes whose centre is not covered. They are unknown for a clipped triangle,
-/// because another of its pieces may cover the centre.
+/// The places for lanes without the centre. A clipped triangle's are unknown, because another of
+/// its pieces may cover the centre.
 HWY_INLINE I own_places(const Piece& p, const Lanes& lanes) {
   const I32 d;
   return (p.flags & kClipped) != 0 ? hn::Set(d, SampledKeys::kUnknownPlace)
                                    : hn::Load(d, lanes.place);
 }
 
-/// The place where the primitive of four samples is shaded, in the lanes of all four: the centre if
-/// the edges, `centre`, cover it (their signs are all 0), else the `own_place` of the first sample
-/// that is not `outside`.
+/// Where the primitive of four samples is shaded, in the lanes of all four: the centre if it is
+/// inside the edges `centre` (all signs 0), else the `own_place` of the first sample that is not
+/// `outside`.
 HWY_INLINE hn::Vec<U32> places_of(I centre, I outside, I own_place) {
   const I32 d;
   const I zero = hn::Zero(d);
@@ -124,19 +122,19 @@ HWY_INLINE hn::Vec<U32> places_of(I centre, I outside, I own_place) {
   return hn::BitCast(U32{}, hn::IfThenElseZero(hn::Lt(centre, zero), first));
 }
 
-/// Edges and boxes of kLanes triangles. If a box has up to 16 px, its vertices lie in a square of
-/// less than 18 px, and so do the samples that are looked at; so |E| < 2^26 fits int32.
+/// Edges and boxes of kLanes triangles. With a box of up to 16 px the vertices and the tested
+/// samples lie in a square of less than 18 px, so |E| < 2^26 fits int32.
 struct SmallTriangles {
   HWY_ALIGN std::int32_t a[3][kLanes], b[3][kLanes];
-  HWY_ALIGN std::int32_t value[3][kLanes];  ///< at the centre of the pixel (x0, y0)
-  HWY_ALIGN std::int32_t x0[kLanes], y0[kLanes], x1[kLanes], y1[kLanes];  ///< box; the last inside
-  std::uint32_t lanes;  ///< small ones whose box is not empty
-  std::uint32_t large;  ///< others whose box is not empty
+  HWY_ALIGN std::int32_t value[3][kLanes];  ///< at the centre of pixel (x0, y0)
+  HWY_ALIGN std::int32_t x0[kLanes], y0[kLanes], x1[kLanes], y1[kLanes];  ///< box, inclusive
+  std::uint32_t lanes;  ///< small ones with a box that is not empty
+  std::uint32_t large;  ///< others with a box that is not empty
 
   HWY_INLINE SmallTriangles(const Triangles& t, Rect bin) {
     const I32 d;
     const I half = hn::Set(d, kHalfPixel);
-    // Vectors begin at whole numbers of them.
+    // Vectors start at multiples of their width.
     const I left = hn::And(hn::Max(t.x0, hn::Set(d, bin.x0)), hn::Set(d, -kPixels));
     const I top = hn::Max(t.y0, hn::Set(d, bin.y0));
     const I right = hn::Min(t.x1, hn::Set(d, bin.x1 - 1));
@@ -164,7 +162,7 @@ struct SmallTriangles {
   }
 };
 
-/// Returns how many samples of `bin` it covers. `low`: of its keys.
+/// Returns the number of samples of `bin` covered. `low`: of its keys.
 template <bool kPlaces>
 HWY_INLINE std::uint64_t raise_small(const Piece& p, std::uint64_t low, const SmallTriangles& t,
                                      std::size_t lane, const Lanes& lanes, int end_x,
@@ -174,7 +172,7 @@ HWY_INLINE std::uint64_t raise_small(const Piece& p, std::uint64_t low, const Sm
   const int vectors = (t.x1[lane] - x0) / kPixels + 1;
   const I from_first = hn::Load(d, lanes.from_first), from_y = hn::Load(d, lanes.y);
   I row[3], across[3], down[3];
-  [[maybe_unused]] I beyond_centre[3];  // what an edge is more at a sample than at the centre
+  [[maybe_unused]] I beyond_centre[3];  // an edge at a sample less that at the centre
   for (int i = 0; i < 3; ++i) {
     const std::int32_t a = t.a[i][lane], b = t.b[i][lane];
     const I by_row = hn::Mul(hn::Set(d, b), from_y);
@@ -189,7 +187,7 @@ HWY_INLINE std::uint64_t raise_small(const Piece& p, std::uint64_t low, const Sm
   const I own_place = own_places(p, lanes);
   HWY_ALIGN float along[kMostColumns + 2][kLanes];
   for (int j = 0; j < vectors; ++j) hn::Store(depths.along(x0 + j * kPixels), F32{}, along[j]);
-  // The pixels of the last vector that lie in the bin.
+  // The last vector's pixels in the bin.
   const int beyond = x0 + vectors * kPixels - end_x;
   const std::uint32_t last = beyond > 0 ? kAllLanes >> (4 * beyond) : kAllLanes;
   std::uint64_t covered = 0;
@@ -222,12 +220,12 @@ HWY_INLINE std::uint64_t raise_small(const Piece& p, std::uint64_t low, const Sm
   return covered;
 }
 
-/// An edge of a large triangle in steps of whole pixels, as Edge is, at four samples.
+/// An edge of a large triangle in steps of whole pixels, like Edge, at four samples.
 struct SampledEdge {
   std::int64_t base;  ///< at the centre of pixel (0, 0)
   std::int32_t a, b;
-  std::int32_t least, most;             ///< of what samples have more than the centre
-  HWY_ALIGN std::int32_t more[kLanes];  ///< by lane, from the first pixel's centre
+  std::int32_t least, most;             ///< range of samples' differences from the centre
+  HWY_ALIGN std::int32_t more[kLanes];  ///< by lane, relative to the first pixel's centre
   [[nodiscard]] std::int64_t at(int x, int y) const {
     return base + std::int64_t{a} * x + std::int64_t{b} * y;
   }
@@ -251,9 +249,9 @@ struct SampledEdge {
   }
 };
 
-/// Raises the keys of a block by a triangle; returns how many samples it covers. A base clamped to
+/// Raises a block's keys by a triangle. Returns the number of samples covered. A base clamped to
 /// ±2^30 keeps the sign of every sum: samples and pixels add less than 2^29 + 2^27. `kFull`: the
-/// triangle covers all of it, so that samples and centres need no look. `low`: of the keys.
+/// triangle covers the whole block, so nothing is tested. `low`: of the keys.
 template <bool kFull, bool kPlaces>
 HWY_INLINE std::uint64_t raise_block(const SampledEdge (&edges)[3], const DepthLanes& depths,
                                      const Lanes& lanes, I own_place, std::uint64_t low, int x0,
@@ -303,7 +301,7 @@ HWY_INLINE std::uint64_t raise_block(const SampledEdge (&edges)[3], const DepthL
       if constexpr (kLooks)
         raise(depth, low, places_of(centre, any, own_place), inside, at);
       else
-        raise(depth, low, NoPlaces{}, inside, at);  // with places: the centre's, which is 0
+        raise(depth, low, NoPlaces{}, inside, at);  // with places: 0, the centre
     }
     for (int i = 0; i < 3; ++i) row[i] = hn::Add(row[i], down[i]);
   }
@@ -315,7 +313,7 @@ HWY_NOINLINE std::uint64_t raise_large(const Piece& p, Rect bin, const SampledKe
                                        DepthBounds* bounds) {
   const Rect box = sample_bounds(p.x, p.y, bin, reach);
   HiddenTest hidden(bounds, bin);
-  // A pixel more on each side holds what its samples reach.
+  // One pixel more on each side contains all its samples.
   const auto around = [](Rect r) { return Rect{r.x0 - 1, r.y0 - 1, r.x1 + 1, r.y1 + 1}; };
   if (hidden.hides_piece(p, around(box))) return 0;
   const std::uint64_t low = keys.low(p.low, 0);
@@ -452,7 +450,7 @@ void merge(const SampledKeys& keys, int x, int y, std::uint64_t* largest, std::u
   using V = hn::Vec<hn::RebindToUnsigned<I64>>;
   const V id = hn::Set(d, kIdMask), large_low = hn::Set(d, SampledKeys::kLargeLow);
   const V place_bits = hn::Set(d, SampledKeys::kUnknownPlace);
-  // SampledKeys::plain, and 0 stays 0.
+  // SampledKeys::plain; 0 stays 0.
   const auto plain = [&](V k) HWY_ATTR {
     if (!keys.has_places) return k;
     const V low = hn::ShiftRight<SampledKeys::kPlaceBits>(hn::And(k, id));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Triangles in lanes, once per instruction set: their vertices, boxes and depths, and which of them
-// the depths of a bin hide. For who covers them (cover_simd.cpp, sampled_keys_simd.cpp); include it
-// after lanes-inl.hpp, outside of any namespace.
+// Triangles in lanes, once per instruction set: vertices, boxes, depths, and which of them a bin's
+// depth bounds hide (for cover_simd.cpp, sampled_keys_simd.cpp). Include it after lanes-inl.hpp,
+// outside of any namespace.
 #if defined(RASTRUM_RASTER_COVER_TRIANGLE_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RASTRUM_RASTER_COVER_TRIANGLE_LANES_INL_HPP
 #undef RASTRUM_RASTER_COVER_TRIANGLE_LANES_INL_HPP
@@ -19,7 +19,7 @@ HWY_BEFORE_NAMESPACE();
 namespace rastrum::raster::HWY_NAMESPACE {
 namespace {  // each source has its own
 
-/// Numbers [4 part, 4 part + 4) of kLanes pieces, or what else there is, as four vectors.
+/// Numbers [4 part, 4 part + 4) of kLanes pieces, or other structs, as four vectors.
 template <class Numbers>
 HWY_INLINE void load_numbers(const Numbers* const (&pieces)[kLanes], int part, I (&out)[4]) {
   const I32 d;
@@ -46,7 +46,7 @@ HWY_INLINE void load_numbers(const Numbers* const (&pieces)[kLanes], int part, I
   out[3] = hn::BitCast(d, hn::InterleaveUpper(d64, high01, high23));
 }
 
-/// Vertices of kLanes triangles, the first and last samples of their boxes, their depths and flags.
+/// kLanes triangles: vertices, first and last samples of boxes, depths and flags.
 struct Triangles {
   I x[3], y[3];
   I x0, y0, x1, y1;
@@ -54,7 +54,7 @@ struct Triangles {
   I flags;
 };
 
-/// `reach`: how far from the pixels' centres samples lie at most, n.8.
+/// `reach`: the largest distance of samples from pixel centres, n.8.
 HWY_INLINE void find_boxes(Triangles& t, int reach = 0) {
   const I32 d;
   const I before = hn::Set(d, kHalfPixel - 1 - reach), half = hn::Set(d, kHalfPixel - reach);
@@ -84,7 +84,6 @@ HWY_INLINE Triangles load_triangles(const Piece* const (&pieces)[kLanes], int re
   return t;
 }
 
-/// Whether anything is known of the bin's depths.
 HWY_INLINE bool knows_depths(const DepthBounds& bounds) {
   const F32 d;
   F most = hn::Zero(d);
@@ -93,7 +92,7 @@ HWY_INLINE bool knows_depths(const DepthBounds& bounds) {
   return !hn::AllTrue(d, hn::Eq(most, hn::Zero(d)));
 }
 
-/// The lowest bound in each square of 2 × 2 blocks of a bin, from its first block on.
+/// The lowest bound of 2 × 2 blocks, from each block of a bin on.
 struct SquareBounds {
   static constexpr std::size_t kPitch = 2 * kBlocksPerBinRow;
   HWY_ALIGN float lowest[kBlocksPerBinRow * kPitch];
@@ -113,9 +112,8 @@ struct SquareBounds {
   }
 };
 
-/// Lanes of triangles that no sample of `bin` can show: HiddenTest::hides_piece in lanes, by the
-/// bounds of the blocks that the box touches, if they are 4 × 4 at most. `reach` as for
-/// load_triangles.
+/// Lanes of triangles that are hidden in `bin`: HiddenTest::hides_piece in lanes, by the bounds of
+/// the blocks that a box touches, if those are at most 4 × 4. `reach` as for load_triangles.
 HWY_INLINE std::uint32_t hidden_lanes(const Triangles& t, Rect bin, const SquareBounds& bounds,
                                       int reach = 0) {
   constexpr float kPxPerSubpixel = 1.0F / kSubpixels;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Coverage for renderers that keep fragments by pixel: a small triangle's samples are one record
-// wherever they lie, not one for each block that they touch.
+// anywhere, not one for each block.
 #pragma once
 
 #include <cstddef>
@@ -9,9 +9,9 @@
 
 namespace rastrum::raster {
 
-/// As Kernels::cover, but the masks are of windows of 8 × 8 pixels: a Block's bx and by say where
-/// one begins, in px from the first pixel of `bin`. No sample of one lies outside of `bin`. Pieces
-/// that are opaque or clipped (kClipped) give blocks only.
+/// As Kernels::cover, but masks are of windows of 8 × 8 pixels. A Block's bx and by are a window's
+/// first pixel, relative to that of `bin`. No sample lies outside of `bin`. Opaque or clipped
+/// (kClipped) pieces give blocks only.
 using CoverWindows = std::size_t (*)(const PieceList& pieces, std::size_t& cursor, Rect bin,
                                      Block* out, std::size_t capacity,
                                      DepthBounds* bounds) noexcept;

@@ -1,26 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// by-size, the rasterizer of a device: a listing of keys, of which the host knows nothing until the
-// band is done. Counters and queues lie on the device, and who reads a queue reads its counter
-// there.
+// by-size, a device's rasterizer: a listing of keys. The host knows nothing of it until the band is
+// done: counters and queues lie on the device, where kernels read them.
 //
 //   project            a thread a vertex                                           geometry.cuh
-//   draw the small     a thread a triangle that needs no clipping: small ones (a box up to
-//                      small_px) are drawn by the warp at once, a thread a sample; larger ones go
-//                      into a queue of pieces, all else into one of primitives
+//   draw the small     a thread a triangle without clipping: small ones (a box up to small_px) are
+//                      drawn by the warp at once, a thread a sample; larger ones go to a queue of
+//                      pieces, all else to one of primitives
 //   draw the rest      a thread a primitive of that queue: the clipper, lines, points; with several
 //                      samples a pixel, all primitives
 //   draw the larger    a warp a piece of the middle; the 64 × 64 tiles of a large one (a box from
-//                      large_px on) go into a third queue
+//                      large_px on) go to a third queue
 //   draw the tiles     a block of threads each
 //   resolve            the caller's: a band of keys is ready
 //
-// A piece or tile that finds its queue full is drawn where it is found: slower, the same keys. Two
-// kernels for triangles, since the clipper costs the registers of the first, which most are for
+// A piece or tile that finds its queue full is drawn where it is found: slower, the same keys.
+// Triangles have two kernels, since the clipper would cost the first, which most take, registers
 // (GPU.md of the project's research: 60 and 128).
 //
-// Order does not matter to a maximum of keys, so neither queues, sizes nor the cut into bands of
-// rows and batches of primitives, which a memory limit asks for, change a bit. Culling of boxes
-// that miss every sample is setup's (make_piece). Sources: paper 1, hybrid; paper 2; decision 0014.
+// A maximum of keys does not depend on order. So queues, sizes, bands of rows and batches of
+// primitives, which a memory limit asks for, change no bit. Setup culls boxes that miss every
+// sample (make_piece). Sources: paper 1, hybrid; paper 2; decision 0014.
 #pragma once
 
 #include <algorithm>
@@ -44,19 +43,18 @@ namespace cuda_detail {
 
 /// A tile of a large piece.
 struct PieceTile {
-  std::uint32_t piece, tile;  ///< by number in the queue; row by row of those that its box touches
+  std::uint32_t piece, tile;  ///< number in the queue; number in the box, row by row
 };
 inline constexpr std::uint32_t kNoPiece = std::numeric_limits<std::uint32_t>::max();
 
-/// The queues of a batch, on the device. Counters may go beyond what there is room for.
+/// A batch's queues, on the device. Counters may exceed the room.
 struct BySizeQueues {
   std::span<std::uint32_t> primitives;
   std::span<Piece> pieces;
   std::span<PieceTile> tiles;
-  std::uint64_t* count;  ///< of each, in this order
+  std::uint64_t* count;  ///< of each queue, in this order
 };
 
-/// Counts of one thread.
 struct BySizeLocal {
   std::uint32_t dropped = 0, culled = 0, clipped = 0, invalid = 0;
   std::uint64_t fragments = 0;
@@ -68,7 +66,7 @@ struct BySizeLocal {
   }
 };
 
-/// Parameters that the kernels for primitives share.
+/// Parameters of all kernels for primitives.
 struct BySizeBatch {
   Assembly assembly;
   DeviceSurface surface;
@@ -78,7 +76,7 @@ struct BySizeBatch {
   LeftPieces left;
   std::uint64_t* sums;
 
-  /// Whether the piece went into its queue, being large enough and finding room.
+  /// Whether the piece is large enough for its queue and found room.
   RASTRUM_HD bool queue(const Piece& piece, Rect bounds) const {
     if (area_of(bounds) <= small_px) return false;
     const std::uint64_t at = parallel::take_place(queues.count[1]);
@@ -86,7 +84,7 @@ struct BySizeBatch {
     queues.pieces[static_cast<std::size_t>(at)] = piece;
     return true;
   }
-  /// Whether the piece is left to others, who find it in `queue`.
+  /// Whether the piece is left to others; puts it in `queue` for them.
   template <class Queue>
   RASTRUM_HD bool leave(const Piece& piece, Queue& queue) const {
     if ((piece.flags & skip) == 0) return false;
@@ -108,14 +106,14 @@ struct BySizeBatch {
   }
 };
 
-/// Triangles [each · i, each · (i + 1)) of the `count` of the batch, with one sample a pixel: set
-/// up by a member each and drawn by the team, or left in the queue of primitives, which has room
-/// for all.
+/// Triangles [each · i, each · (i + 1)) of the batch's `count`, with one sample a pixel. Each
+/// member sets up one and the team draws them, or they go to the queue of primitives, which has
+/// room for all.
 struct DrawUnclipped : BySizeBatch {
   std::size_t count = 0, each = TeamTriangles::kCount;
 
-  /// Few triangles are dealt to more teams than all of a team's members could set up: those that
-  /// cover much would else wait for each other.
+  /// Few triangles are spread over more teams than their members need: else those that cover much
+  /// would wait for each other.
   [[nodiscard]] static std::size_t each_of(std::size_t count) {
     constexpr std::size_t kTeams = 8192, kLeast = 4;
     std::size_t each = TeamTriangles::kCount;
@@ -138,7 +136,7 @@ struct DrawUnclipped : BySizeBatch {
   }
 
  private:
-  /// The box of what is to be drawn at once; empty: there is nothing.
+  /// The box to draw at once; may be empty.
   RASTRUM_HD Rect set_up(std::size_t i, Piece& piece, BySizeLocal& local) const {
     const std::uint64_t id = assembly.first + i;
     const Draw& draw_of_it = assembly.geometry.draw_of(id);
@@ -160,7 +158,7 @@ struct DrawUnclipped : BySizeBatch {
   }
 };
 
-/// Any primitive: of the queue, or of the batch where there is none.
+/// A primitive of the queue or, without one, of the batch.
 struct DrawAny : BySizeBatch {
   RASTRUM_HD void operator()(std::size_t k, BySizeLocal& local) const {
     const std::size_t i = queues.primitives.empty() ? k : queues.primitives[k];
@@ -176,7 +174,7 @@ struct DrawAny : BySizeBatch {
   }
 };
 
-/// A piece of the queue: drawn, or its tiles queued.
+/// Draws a piece of the queue or queues its tiles.
 struct DrawLarger {
   DeviceSurface surface;
   BySizeQueues queues;
@@ -239,8 +237,7 @@ struct DrawTile {
 
 }  // namespace cuda_detail
 
-/// SurfaceDrawer, for one sample a pixel or several. Counters: "batches", "larger pieces", "tile
-/// pairs".
+/// Draws with one or several samples a pixel. Counters: "batches", "larger pieces", "tile pairs".
 class BySize final : public SurfaceDrawer {
  public:
   explicit BySize(DeviceSizes sizes = {}) : sizes_(sizes) {}
@@ -259,7 +256,7 @@ class BySize final : public SurfaceDrawer {
             std::uint64_t* sums) override {
     using namespace cuda_detail;  // NOLINT: its kernels are the subject here
     using parallel::view_of;
-    // A small piece's fragments are counted in 16 bits, at all samples.
+    // A small piece's fragments, at all samples, are counted in 16 bits.
     const std::uint64_t small_px = std::min(
         sizes_.small_px, std::uint64_t{4096} / static_cast<std::uint64_t>(surface.samples.count));
     const std::uint64_t end = scene.first_id() + scene.primitives();

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coverage on a device, by size: a thread finds the samples of a piece by the one cover_8x8; a warp
-// or a block of threads asks its edges a sample a thread. Keys are put by atomic maximum.
-//
-// Small triangles are set up a thread each and drawn by a warp together, a sample a thread. Source
-// of the three sizes: paper 1's hybrid, section 3.4, and paper 2's queue of large triangles.
+// Coverage on a device, by size. A thread finds a piece's samples by cover_8x8. A warp or block of
+// threads tests its edges, a sample a thread. A warp draws small triangles together, which its
+// threads set up one each. Keys are put by atomic maximum. The three sizes come from paper 1's
+// hybrid, section 3.4, and paper 2's queue of large triangles.
 #pragma once
 
 #include <cstddef>
@@ -19,16 +18,17 @@
 
 namespace rastrum::raster {
 
-/// Across a tile of large triangles, px.
+/// Side of a tile of large triangles, px.
 inline constexpr int kDeviceTile = 64;
 
-/// Where keys go. Memory of the device. With several samples a pixel each has a plane of keys,
-/// and pieces are those of the pixels' centres, moved before they are drawn (samples.hpp).
+/// Where keys go, in device memory. With several samples a pixel each has a plane of keys. Pieces
+/// are relative to pixel centres and are moved for a sample when drawn (samples.hpp).
 struct DeviceSurface {
-  Rect view;                          ///< what is drawn; begins with a tile's first pixel
-  SurfaceView keys;                   ///< its blocks
-  std::uint32_t* overdraw = nullptr;  ///< fragments of each pixel, in the places of the keys; null
-  std::size_t plane = 0;              ///< from a sample's keys to the next one's
+  Rect view;  ///< the pixels to draw; starts at a tile's first pixel
+  SurfaceView keys;
+  std::uint32_t* overdraw =
+      nullptr;            ///< fragments of each pixel, placed like the keys; may be null
+  std::size_t plane = 0;  ///< from a sample's keys to the next's
   SamplePattern samples{};
 
   /// The key of `piece` at element i of block (bx, by).
@@ -36,7 +36,7 @@ struct DeviceSurface {
     const int x = bx * kBlockSize + i % kBlockSize, y = by * kBlockSize + i / kBlockSize;
     return make_key(depth_at(piece, x, y), piece.low);
   }
-  /// A fragment of `piece` there, which is as that sample sees it.
+  /// Puts a fragment of `piece`, which is moved for that sample.
   RASTRUM_HD void put(const Piece& piece, int bx, int by, int i, int sample = 0) const {
     const std::size_t at = keys.index(bx, by) * 64 + static_cast<std::size_t>(i);
     parallel::atomic_maximum(plane_of(sample)[at], key(piece, bx, by, i));
@@ -48,7 +48,7 @@ struct DeviceSurface {
   [[nodiscard]] RASTRUM_HD Rect bounds(const Piece& piece) const {
     return sampled_bounds(piece, view, samples);
   }
-  /// Calls f(sample, piece, its box in `part`) for the samples that the piece may cover there.
+  /// Calls f(sample, piece, its box in `part`) for the samples that the piece may cover.
   template <class F>
   RASTRUM_HD void each_sample(const Piece& piece, Rect part, F&& f) const {
     for (int s = 0; s < samples.count; ++s) {
@@ -69,7 +69,7 @@ struct DeviceSurface {
           a.y1 < b.y1 ? a.y1 : b.y1};
 }
 
-/// The samples of block (bx, by) inside of the edges and of `box`, of which it looks at no others.
+/// The samples of block (bx, by) inside of the edges and of `box`; tests no others.
 [[nodiscard]] RASTRUM_HD inline std::uint64_t cover_box(const Edges& edges, Rect box, int bx,
                                                         int by) {
   const int x0 = bx * kBlockSize, y0 = by * kBlockSize;
@@ -77,7 +77,7 @@ struct DeviceSurface {
   return cover_8x8(edges, bx, by, {part.x0 - x0, part.y0 - y0, part.x1 - x0, part.y1 - y0});
 }
 
-/// The blocks that a box, not empty, touches: row by row.
+/// The blocks of a box, which is not empty, row by row.
 struct BlocksOf {
   int bx0, by0, columns, rows;
 
@@ -91,12 +91,12 @@ struct BlocksOf {
   [[nodiscard]] RASTRUM_HD int by(int k) const { return by0 + k / columns; }
 };
 
-/// The tiles that a box touches, in numbers of tiles of the view.
+/// The tiles of a box, numbered from the view's first.
 RASTRUM_HD inline Rect tiles_of(Rect box, Rect view) {
   return {(box.x0 - view.x0) / kDeviceTile, (box.y0 - view.y0) / kDeviceTile,
           (box.x1 - 1 - view.x0) / kDeviceTile + 1, (box.y1 - 1 - view.y0) / kDeviceTile + 1};
 }
-/// By one thread; returns the number of fragments. `box`: of the piece in the view, not empty.
+/// By one thread. Returns the number of fragments. `box`: the piece's in the view, not empty.
 RASTRUM_HD inline int draw_by_thread(const DeviceSurface& surface, const Piece& piece, Rect box,
                                      int sample = 0) {
   const Edges edges = edges_of(piece);
@@ -112,7 +112,7 @@ RASTRUM_HD inline int draw_by_thread(const DeviceSurface& surface, const Piece& 
   return fragments;
 }
 
-/// By a team; adds the number of fragments to *fragments. `box` as above, the same for all members.
+/// By a team. Adds the number of fragments to *fragments. `box` as above, the same for all members.
 /// A sample a member, so that neighbours write neighbouring keys.
 template <class Team>
 RASTRUM_HD void draw_by_team(const DeviceSurface& surface, const Piece& piece, Rect box,
@@ -133,18 +133,18 @@ RASTRUM_HD void draw_by_team(const DeviceSurface& surface, const Piece& piece, R
   parallel::add_to_sum(*fragments, mine);
 }
 
-/// Triangles that a team draws together: their boxes' samples, one triangle's after the other's,
-/// are dealt to the members one by one, so that none waits for the one that has the largest.
+/// Triangles that a team draws together. Their boxes' samples, triangle after triangle, are dealt
+/// to the members one by one, so that none waits for the one with the largest.
 struct TeamTriangles {
   static constexpr int kCount = 32;
   Piece piece[kCount];
   alignas(16) Edge edge[kCount][3];
   int x0[kCount], y0[kCount], width[kCount];
-  /// How many samples its box has; in draw(): those before it, and of all.
+  /// The number of its box's samples; in draw() their prefix sums.
   std::uint32_t samples[kCount + 1];
 
-  /// Triangle k, by one member. `box`: of the piece in the view; may be empty, then the piece is
-  /// not read.
+  /// Sets triangle k, by one member. `box`: the piece's in the view; if empty, the piece is not
+  /// read.
   RASTRUM_HD void set(int k, const Piece& p, Rect box) {
     samples[k] = static_cast<std::uint32_t>(area_of(box));
     if (box.empty()) return;
@@ -154,7 +154,7 @@ struct TeamTriangles {
     y0[k] = box.y0;
     width[k] = box.x1 - box.x0;
   }
-  /// By all members, when all triangles are set; returns how many fragments this one has found.
+  /// By all members, after all are set. Returns this member's number of fragments.
   template <class Team>
   RASTRUM_HD std::uint32_t draw(const DeviceSurface& surface, const Team& team) {
     parallel::team_prefix_sums(samples, kCount, team);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The draws of a frame in memory of a device: the geometry that assemble.hpp asks for.
-//
-// Arrays that a user has on the device already are named by spans and not copied (DeviceDraw);
-// upload() (upload.cuh) makes the same of a host's draws.
+// The draws of a frame in device memory: the geometry for assemble.hpp. Spans name arrays that a
+// user already has on the device, without copies (DeviceDraw). upload() (upload.cuh) makes the same
+// of a host's draws.
 #pragma once
 
 #include <cstddef>
@@ -16,19 +15,19 @@
 #include <rastrum/raster/draws/geometry.hpp>
 #include <rastrum/raster/draws/vertices.hpp>
 
-/// For large functions that many kernels need: they are called, where nvcc would else compile them,
-/// for minutes, in each kernel. A GPU has to show what the calls cost.
+/// For large functions that many kernels call. Inlined, nvcc would compile them for minutes in each
+/// kernel. A GPU has to show what the calls cost.
 #define RASTRUM_HD_CALL RASTRUM_HD inline __attribute__((noinline))
 
 namespace rastrum::raster {
 
-/// The vertex stage of a draw. Spans of device memory.
+/// A draw's vertex stage, in spans of device memory.
 struct DeviceVertices {
   std::span<const Vec3> positions;  ///< object space
   Mat4d object_to_clip;
-  /// Results of the host for a vertex stage that only it can run: then there are no positions.
+  /// The host's results for a stage that only it can run; then there are no positions.
   std::span<const Vec4d> clip;                 ///< VertexStage::clip_position of each
-  std::span<const ProjectedVertex> projected;  ///< else DeviceScene's; empty: where they are read
+  std::span<const ProjectedVertex> projected;  ///< else DeviceScene's; empty: projected where read
 
   [[nodiscard]] RASTRUM_HD ProjectedVertex vertex(const Mat4& matrix, Viewport viewport,
                                                   std::uint32_t i) const {
@@ -40,20 +39,20 @@ struct DeviceVertices {
   }
 };
 
-/// A draw whose indices, face materials and flags by material lie on the device; `source` is not
-/// looked at. Ids and vertex places are numbered by DeviceScene.
+/// A draw with indices, face materials and flags by material on the device. Its `source` is not
+/// read. DeviceScene numbers ids and vertex places.
 struct DeviceDraw {
   Draw draw;
   DeviceVertices vertices;
 };
 
-/// A FrameGeometry in the form that kernels take. Borrows a DeviceScene.
+/// A FrameGeometry for kernels. Borrows from a DeviceScene.
 struct DeviceGeometry {
   int width = 0, height = 0;
   Viewport viewport;
   std::span<const Draw> draws;
   std::span<const DeviceVertices> vertices;  ///< of each draw
-  std::span<const Mat4> matrices;            ///< of each draw, in float32
+  std::span<const Mat4> matrices;            ///< of each draw, float32
 
   [[nodiscard]] RASTRUM_HD std::size_t number_of(const Draw& draw) const {
     return static_cast<std::size_t>(&draw - draws.data());
@@ -66,7 +65,7 @@ struct DeviceGeometry {
     const std::size_t d = number_of(draw);
     return vertices[d].clip_position(matrices[d], index);
   }
-  /// Clip planes are the host's.
+  /// Only the host has clip planes.
   [[nodiscard]] RASTRUM_HD std::uint32_t flags_of(const Draw& draw, std::uint64_t primitive) const {
     return draw.flags_of(primitive);
   }
@@ -77,7 +76,7 @@ struct DeviceGeometry {
 
 namespace cuda_detail {
 
-/// Named outside of its user, as nvcc's host code wants it.
+/// Outside of its user, because nvcc's host code needs that.
 struct ProjectVertex {
   Mat4 object_to_clip;
   Viewport viewport;
@@ -88,17 +87,15 @@ struct ProjectVertex {
 
 }  // namespace cuda_detail
 
-/// A frame's draws, numbered, and their projected vertices.
 template <class Exec>
 class DeviceScene {
   template <class T>
   using Array = decltype(parallel::make_buffer<T>(std::declval<Exec&>(), 0));
 
  public:
-  /// `draws`: a list of the host's, of spans of the device's, which must outlive this. Ids count
-  /// from `first_id`. With `project_first` vertices are projected once, 16 B each, else where they
-  /// are read. Throws Error{invalid_argument} where there are more primitives than ids. Work
-  /// O(vertices + draws).
+  /// `draws`: a host list with spans of the device's, which must outlive this. Ids count from
+  /// `first_id`. With `project_first` vertices are projected once, 16 B each, else where they are
+  /// read. Throws Error{invalid_argument}: more primitives than ids. Work O(vertices + draws).
   DeviceScene(Exec& exec, std::span<const DeviceDraw> draws, int width, int height,
               std::uint64_t first_id = 0, bool project_first = true)
       : first_id_(first_id), width_(width), height_(height) {

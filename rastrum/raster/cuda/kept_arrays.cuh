@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A caller's arrays on the device, which stay there from frame to frame as long as each frame reads
-// them.
+// A caller's arrays on the device. They stay there while each frame reads them.
 //
-// An array is known by its place and size, and by a mark of all of its bytes. The host's threads
-// read it for the mark; a copy would have to read it as well, and more slowly, since the driver
-// copies by one thread and over the bus. So an array that was changed in place is copied again,
-// over the old copy. A change of one word of eight bytes is never missed; others are where 64 bits
-// of each of the words' lanes meet by chance.
+// An array is known by its place, its size and a mark of all its bytes. The host's threads read it
+// for the mark; a copy would be slower, since the driver copies by one thread and over the bus. An
+// array changed in place is copied again, over the old copy. A change of one eight-byte word is
+// never missed, others only if 64 bits in each of the words' lanes agree by chance.
 #pragma once
 
 #include <algorithm>
@@ -23,14 +21,13 @@
 
 namespace rastrum::raster {
 
-/// A mark of an array's bytes, by which a change is noticed.
 class ContentMark {
  public:
   bool operator==(const ContentMark&) const = default;
 
-  /// The mark of so many bytes, of which none is taken yet.
+  /// The mark of so many bytes, before any is taken.
   explicit ContentMark(std::size_t bytes = 0) : lanes_{bytes, ~std::uint64_t{bytes}, 1, 2} {}
-  /// Four words more. Each step is a bijection of the word, and of what the lane was.
+  /// Takes four words. Each step is a bijection of the word and of the lane's state.
   void take(const std::uint64_t (&words)[4]) {
     constexpr std::uint64_t kOdd[4] = {0x9E3779B97F4A7C15U, 0xBF58476D1CE4E5B9U,
                                        0x94D049BB133111EBU, 0xD6E8FEB86659FD93U};
@@ -41,7 +38,7 @@ class ContentMark {
   }
   void take(const ContentMark& other) { take(other.lanes_); }
 
-  /// The mark of the bytes, by the threads. Work O(bytes), at the memory's speed.
+  /// Uses all threads. Work O(bytes), at the memory's speed.
   [[nodiscard]] static ContentMark of(std::span<const std::byte> bytes,
                                       parallel::Threads& threads) {
     constexpr std::size_t kPart = std::size_t{1} << 18;
@@ -79,13 +76,13 @@ class KeptArrays {
  public:
   KeptArrays(Exec& exec, parallel::Threads& threads) : exec_(exec), threads_(threads) {}
 
-  /// A frame begins: what the one before did not read goes.
+  /// Begins a frame: drops what the last one did not read.
   void begin() {
     std::erase_if(kept_, [](const auto& kept) { return !kept.second.is_read; });
     for (auto& kept : kept_) kept.second.is_read = false;
   }
-  /// The copy, until the next begin(). The array must stay until the stream was waited for. Does
-  /// not wait.
+  /// The copy, valid until the next begin(). The array must stay until the stream was waited for.
+  /// Does not wait.
   [[nodiscard]] const void* operator()(std::span<const std::byte> host) {
     const auto [at, is_new] = kept_.try_emplace({host.data(), host.size()});
     Kept& kept = at->second;
@@ -100,9 +97,8 @@ class KeptArrays {
     kept.is_read = true;
     return kept.bytes.data();
   }
-  /// After a frame that failed, of whose copies nobody knows how far they came.
+  /// After a frame that failed: its copies may be incomplete.
   void forget() { kept_.clear(); }
-  /// Arrays copied so far.
   [[nodiscard]] std::uint64_t copies() const { return copies_; }
 
  private:

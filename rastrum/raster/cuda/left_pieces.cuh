@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pieces that a SurfaceDrawer leaves to others (fragment tests, layers), in a queue on the device:
-// they are set up once, where all are, and the host need not know how many there are.
+// Pieces that a SurfaceDrawer leaves to others (fragment tests, layers), in a queue on the device.
+// They are set up once, with all others, and the host need not know their number.
 //
-// The others go through it by the 8 × 8 blocks of the pieces' boxes: a thread takes a small box; a
-// larger one goes in runs of blocks into a second queue, each for a team. A run that finds no room
-// there is walked by the thread that found it. Where there were more pieces than the first queue
-// holds, nobody draws any, and the host, which reads the counter with the picture, makes them by a
-// listing.
+// Others walk the queue by the 8 × 8 blocks of the pieces' boxes. A thread takes a small box. A
+// larger one goes in runs of blocks to a second queue, for teams; the thread walks runs without
+// room there. If the first queue overflowed, nothing is drawn from it. The host, which reads the
+// counter with the picture, then makes the pieces by a listing.
 #pragma once
 
 #include <cstddef>
@@ -22,11 +21,11 @@
 
 namespace rastrum::raster {
 
-/// Memory of the device. Pieces come in any order, but those of a clipped triangle side by side.
-/// Among them are some of no primitive, whose flags are 0.
+/// Device memory. Pieces come in any order, but those of a clipped triangle side by side. Some are
+/// of no primitive and have flags 0.
 struct LeftPieces {
-  std::span<Piece> pieces;         ///< room; empty: nothing is kept
-  std::uint64_t* count = nullptr;  ///< may go beyond the room
+  std::span<Piece> pieces;         ///< room; empty: none is kept
+  std::uint64_t* count = nullptr;  ///< may exceed the room
 
   /// Whether pieces are missing.
   [[nodiscard]] RASTRUM_HD bool is_full() const { return *count > pieces.size(); }
@@ -37,7 +36,7 @@ struct LeftPieces {
   }
 };
 
-/// Puts the pieces of one primitive there, by one thread, which calls end() at last.
+/// Puts the pieces of one primitive there. Used by one thread, which calls end() last.
 class LeaveOfPrimitive {
  public:
   RASTRUM_HD explicit LeaveOfPrimitive(const LeftPieces& left) : left_(left) {}
@@ -54,8 +53,8 @@ class LeaveOfPrimitive {
   }
 
  private:
-  /// One more than a triangle has, so that behind the last is none of the same: who looks for
-  /// pieces of the same triangle there must not read what an earlier frame left.
+  /// One more than a triangle has, so that an empty place follows: code that looks there for pieces
+  /// of the same triangle must not read an earlier frame's.
   static constexpr std::uint32_t kPlaces = kMaxPieces + 1;
 
   const LeftPieces& left_;
@@ -65,7 +64,7 @@ class LeaveOfPrimitive {
 
 namespace cuda_detail {
 
-/// Blocks of the box of a piece, by their number in it: from 128 · part on.
+/// Blocks of a piece's box, by their number in it, from 128 · part on.
 struct BlockRun {
   std::uint32_t piece, part;
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
@@ -73,7 +72,7 @@ struct BlockRun {
 };
 struct BlockRuns {
   std::span<BlockRun> runs;
-  std::uint64_t* count;  ///< may go beyond the room
+  std::uint64_t* count;  ///< may exceed the room
 
   /// Whether there was room for all of a piece.
   RASTRUM_HD bool put(std::uint32_t piece, std::uint64_t blocks) const {
@@ -87,7 +86,7 @@ struct BlockRuns {
   }
 };
 
-/// The pieces with small boxes, by a thread each.
+/// Pieces with small boxes, a thread each.
 template <class Visit>
 struct VisitPieces {
   LeftPieces left;
@@ -110,7 +109,7 @@ struct VisitPieces {
   RASTRUM_HD void end(const Local& local) const { visit.end(local); }
 };
 
-/// The runs of the others, by a team each.
+/// The others' runs, a team each.
 template <class Visit>
 struct VisitRuns {
   BlockRuns runs;
@@ -132,17 +131,16 @@ struct VisitRuns {
 
 }  // namespace cuda_detail
 
-/// How many runs there is room for.
 [[nodiscard]] inline std::size_t room_for_runs(const LeftPieces& left) {
   constexpr std::size_t kLeast = std::size_t{1} << 12, kMost = std::size_t{1} << 22;
   const std::size_t room = kLeast + left.pieces.size() / 4;
   return room < kMost ? room : kMost;
 }
 
-/// Calls visit(i, j, local) for j < visit.blocks(i) of each piece i of `left`, in any order and by
-/// many threads, and visit.end(local) by each at last, where Visit::Local is what a thread has
-/// counted. Where pieces are missing it calls nothing, and adds to *held. `run_count`: 0, on the
-/// device. Work O(pieces + blocks). Does not wait.
+/// Calls visit(i, j, local) for j < visit.blocks(i) of each piece i of `left`, in any order by many
+/// threads, and then visit.end(local) by each. Visit::Local has a thread's counts. If pieces are
+/// missing it calls nothing and adds to *held. `run_count`: 0, on the device. Work O(pieces +
+/// blocks). Does not wait.
 template <class Visit>
 void visit_blocks(parallel::Cuda& exec, const LeftPieces& left, const Visit& visit,
                   std::uint64_t* run_count, std::uint64_t* held) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Materials on a device: their textures, which stay there from frame to frame, the arrays that
-// shaders read, and the functors that shade and test by material_scalar.hpp, so with the bits of
-// the host's serial picture.
+// Materials on a device: their textures, which stay from frame to frame, the arrays that shaders
+// read, and functors of material_scalar.hpp, so with the bits of the host's serial picture.
 #pragma once
 
 #include <cstddef>
@@ -19,14 +18,14 @@
 
 namespace rastrum::raster {
 
-/// Colours and alpha where a scene's materials have a say: the colours are theirs or those of a lit
-/// shader, and alpha is the opacity or, for those that blend, their own too (alpha.hpp).
+/// Colours and alpha with a scene's materials. Colours are theirs or a lit shader's. Alpha is the
+/// opacity, times their own where they blend (alpha.hpp).
 struct MaterialOnDevice {
-  LitOnDevice lit;  ///< its opacity is not looked at
+  LitOnDevice lit;  ///< its opacity is not used
   MaterialView scene;
   float opacity = 1;
-  bool shades = false;  ///< the colours are the materials'
-  bool blends = false;  ///< alpha is theirs, too
+  bool shades = false;  ///< colours are the materials'
+  bool blends = false;  ///< alpha is, too
   bool linear = false;  ///< colours are linear light
 
   RASTRUM_HD Vec4 operator()(std::uint64_t key, int x, int y, Vec2 from_centre = {0, 0}) const {
@@ -48,19 +47,18 @@ struct MaterialOnDevice {
   }
 };
 
-/// The library's own fragment tests: alpha masks, and the depth of a picture that is drawn over.
+/// The library's fragment tests: alpha masks, and the depth of a picture that is drawn over.
 struct TestOnDevice {
   DeviceGeometry geometry;
   MaterialView masks;
   bool has_masks = false;
-  ImageView<const float> behind;  ///< of the band that begins in row `y0`; null: nothing is
+  ImageView<const float> behind;  ///< of the band from row `y0` on; null: no picture
   int y0 = 0;
 
-  /// Whether the fragment is kept.
   RASTRUM_HD bool operator()(std::uint64_t key, int x, int y) const {
     if (behind.data != nullptr) {
       const float depth = behind.data[(y - y0) * behind.stride + x];
-      // Where nothing is behind (depth 0), a fragment of depth 0 is drawn, too.
+      // Where nothing is behind (depth 0), even a fragment of depth 0 is drawn.
       if (depth > 0 && !(std::bit_cast<float>(static_cast<std::uint32_t>(key >> kIdBits)) > depth))
         return false;
     }
@@ -75,19 +73,19 @@ struct TestOnDevice {
   }
 };
 
-/// The texels of a scene's textures on the device, each copied there once; textures that a frame
-/// does not read go with the next frame.
+/// Texels of a scene's textures on the device, each copied once. A texture that a frame does not
+/// read goes with the next frame.
 template <class Exec>
 class DeviceTextures {
  public:
   explicit DeviceTextures(Exec& exec) : exec_(exec) {}
 
-  /// Chains that are asked for before the next begin() are kept.
+  /// Keeps chains that are asked for before the next begin().
   void begin() {
     std::erase_if(kept_, [](const auto& kept) { return !kept.second.is_read; });
     for (auto& kept : kept_) kept.second.is_read = false;
   }
-  /// `host` with pointers of the device's. Waits where it is new.
+  /// `host` with device pointers. Waits if it is new.
   [[nodiscard]] MipChain operator()(const MipChain& host) {
     auto at = kept_.find(host.number);
     if (at == kept_.end()) at = kept_.emplace(host.number, copy_of(host)).first;
@@ -102,7 +100,6 @@ class DeviceTextures {
     }
     return chain;
   }
-  /// Chains copied so far.
   [[nodiscard]] std::uint64_t copies() const { return copies_; }
 
  private:
@@ -139,11 +136,10 @@ class DeviceTextures {
   std::uint64_t copies_ = 0;
 };
 
-/// How much of a scene's materials is read.
 enum class MaterialUse : std::uint8_t { alpha, all };
 
-/// A scene's materials and the arrays of its meshes on the device. Lives as long as `uploads` and
-/// the textures' frame. Waits.
+/// A scene's materials and its meshes' arrays on the device. Lives as long as `uploads` and the
+/// textures' frame. Waits.
 template <class Exec>
 class MaterialUpload {
   template <class T>

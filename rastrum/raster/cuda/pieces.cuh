@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From primitives to pieces on a device: assemble_primitive (assemble.hpp), clipper included, by a
-// thread a primitive, in order of submission: counted, scanned, written. For the papers' rows, and
-// for what finds no room in by-size's queues (by_size.cuh makes pieces where it draws them).
+// Primitives to pieces on a device: assemble_primitive (assemble.hpp) with the clipper, a thread a
+// primitive, in order of submission: counted, scanned, written. For the papers' rows, and for
+// pieces without room in by-size's queues (by_size.cuh makes the others where it draws them).
 #pragma once
 
 #include <cstddef>
@@ -18,14 +18,12 @@
 
 namespace rastrum::raster {
 
-/// The outcome of setting up a primitive.
 struct Outcome {
-  std::uint8_t pieces = 0;  ///< that are to be written
+  std::uint8_t pieces = 0;  ///< to be written
   Fate fate = Fate::culled;
-  bool valid = true;  ///< its indices, and its material's number, are in range
+  bool valid = true;  ///< its indices and its material's number are in range
 };
 
-/// The sum of many outcomes.
 struct Outcomes {
   std::uint64_t dropped = 0, culled = 0, clipped = 0, invalid = 0;
   std::uint64_t pieces = 0;
@@ -55,7 +53,7 @@ struct Assembly {
   std::uint64_t first = 0;
   SamplePattern samples{};
 
-  /// Whether the indices of a primitive, and its material's number, are in range.
+  /// Whether a primitive's indices and its material's number are in range.
   [[nodiscard]] RASTRUM_HD static bool is_valid(const Draw& draw, std::uint64_t p) {
     bool valid = true;
     for (int corner = 0; corner < static_cast<int>(draw.topology); ++corner)
@@ -66,9 +64,9 @@ struct Assembly {
     return valid;
   }
 
-  /// Calls emit(piece) for the pieces of primitive first + i that have a sample of the image in
-  /// their box, as they lie at the centres of pixels: moved() (samples.hpp) makes of them what a
-  /// sample sees. `pieces` of the result is the caller's to fill.
+  /// Calls emit(piece) for the pieces of primitive first + i whose box has a sample of the image.
+  /// They are relative to pixel centres; moved() (samples.hpp) moves them for a sample. Does not
+  /// set `pieces` of the result.
   template <class Emit>
   RASTRUM_HD Outcome assemble(std::size_t i, Emit&& emit) const {
     const std::uint64_t id = first + i;
@@ -86,8 +84,8 @@ struct Assembly {
           if (!piece_bounds(moved(piece, samples.at[t]), image).empty()) return;
         emit(piece);
       };
-      // Setup leaves out what has no sample in its box, so others may see what the first does not;
-      // but what was drawn whole is there.
+      // Setup leaves out boxes without a sample, so other samples may see what the first does not.
+      // A primitive that was drawn has all its pieces.
       const Fate here = assemble_primitive(geometry, draw, p, emit_new, 0, at);
       if (here != Fate::culled) out.fate = here;
       if (here == Fate::drawn || here == Fate::dropped) break;
@@ -118,7 +116,7 @@ struct HasPieces {
   RASTRUM_HD bool operator()(std::uint32_t i) const { return outcomes[i].pieces > 0; }
 };
 
-/// The pieces of primitive first + which[k] that keep(piece) holds for, at the places of segment k.
+/// The pieces of primitive first + which[k] with keep(piece), at the places of segment k.
 template <class Which, class Keep, class Places>
 struct WritePieces {
   Assembly assembly;
@@ -137,9 +135,8 @@ struct WritePieces {
 
 }  // namespace cuda_detail
 
-/// Writes the pieces of primitives first + which[k] for which keep(piece) holds, in order;
-/// `pieces_of[k]` says how many each has. Work O(size + pieces). Memory: 48 B a piece and 8 B a
-/// primitive. Waits.
+/// Writes the pieces of primitives first + which[k] with keep(piece), in order; `pieces_of[k]` is
+/// the number of each. Work O(size + pieces). Memory: 48 B a piece and 8 B a primitive. Waits.
 template <class Exec, class Which, class PieceCounts, class Keep>
 [[nodiscard]] auto write_pieces(Exec& exec, const Assembly& assembly, const Which& which,
                                 const PieceCounts& pieces_of, Keep keep) {
@@ -153,7 +150,7 @@ template <class Exec, class Which, class PieceCounts, class Keep>
   return pieces;
 }
 
-/// Throws Error{invalid_argument} where an index or a face material was out of range.
+/// Throws Error{invalid_argument}: an index or a face material is out of range.
 inline void check_valid(std::uint64_t invalid) {
   if (invalid > 0)
     throw Error(Errc::invalid_argument,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From keys to images on a device: a thread a pixel. Depth, ids and keys of any frame; colours by
-// a shader that is a functor, (key, x, y) to a premultiplied Vec4: LitOnDevice has the lit shaders
-// but `wireframe`, by their scalar form, so their bits; materials.cuh has `material`. The rules are
-// those of the host's resolve_block.
+// Keys to images on a device, a thread a pixel: depth, ids, keys, and colours by a shader functor,
+// (key, x, y) to a premultiplied Vec4. LitOnDevice has the lit shaders except `wireframe`, in their
+// scalar form and so with their bits; materials.cuh has `material`. The rules are the host's
+// resolve_block.
 #pragma once
 
 #include <bit>
@@ -23,8 +23,8 @@
 
 namespace rastrum::raster {
 
-/// Images in memory of the device, as Targets; an empty view is not computed. Pixel (0, 0) is that
-/// of DeviceSurface::view, whose size they have.
+/// Images in device memory, like Targets; empty views are not computed. Pixel (0, 0) and size are
+/// those of DeviceSurface::view.
 struct DeviceTargets {
   ImageView<Rgba8> color8{};
   ImageView<Vec4> color{};
@@ -32,7 +32,7 @@ struct DeviceTargets {
   ImageView<std::int64_t> ids{};
   ImageView<std::uint64_t> keys{};
 
-  /// Bytes a pixel of those targets of `t` that are wanted.
+  /// Bytes a pixel of the wanted targets of `t`.
   static std::uint64_t bytes_of(const Targets& t) {
     std::uint64_t bytes = 0;
     for_each_target([&](const auto& row) {
@@ -42,18 +42,17 @@ struct DeviceTargets {
   }
 };
 
-/// A triangle as the lit shaders read it, in float32: LitTriangle (lit_triangle.hpp) without what
-/// only thin and clipped triangles have.
+/// LitTriangle (lit_triangle.hpp) without what only thin and clipped triangles have.
 struct alignas(16) LitRecord {
   float x0, y0, p1, q1, p2, q2;
   float inv_w[3];
   Vec3 normal[3], color[3];
-  std::uint32_t exact;  ///< it is thin or clipped, so the rest is not set
+  std::uint32_t exact;  ///< thin or clipped: the rest is not set
 };
 static_assert(sizeof(LitRecord) == 112);
 
-/// The lit shaders for which has() says so, at one opacity as Shading has it; at 0 nothing is
-/// read. `scene`: spans of the device's.
+/// The lit shaders with has(), at one opacity as in Shading; at 0 nothing is read. `scene`: spans
+/// of the device's.
 struct LitOnDevice {
   Shader model = Shader::flat;
   DeviceGeometry geometry;
@@ -67,7 +66,7 @@ struct LitOnDevice {
     if (opacity == 1) return {c.x, c.y, c.z, 1};
     return {c.x * opacity, c.y * opacity, c.z * opacity, opacity};
   }
-  /// The same colour by a record of its triangle, which was read before.
+  /// The same colour, from the triangle's record.
   using Record = LitRecord;
   RASTRUM_HD Vec4 operator()(const LitRecord& record, std::uint64_t key, int x, int y,
                              Vec2 from_centre = {0, 0}) const {
@@ -124,15 +123,14 @@ struct LitOnDevice {
   }
 };
 
-/// A test that keeps all fragments.
 struct KeepsFragments {
   RASTRUM_HD bool operator()(std::uint64_t, int, int) const { return true; }
 };
 
-/// How colours meet what is there; as Pass and FrameRequest have it.
+/// How colours combine with the targets, as in Pass and FrameRequest.
 struct ResolveRules {
   Backdrop backdrop;
-  Vec4 background;  ///< of pixels that nothing covers: premultiplied display values
+  Vec4 background;  ///< where nothing covers a pixel: premultiplied display values
   bool over = false;
   bool load = false;
   std::uint64_t first_id = 0;
@@ -142,15 +140,15 @@ struct ResolveRules {
             premultiplied_from_straight(request.background), request.pass.over, request.pass.load,
             request.pass.first_id};
   }
-  /// Whether the pixel of a key holds a surface of this pass.
+  /// Whether a key's pixel has a surface of this pass.
   [[nodiscard]] RASTRUM_HD bool covers(std::uint64_t key) const {
     return key != 0 && (!load || id_of_key(key) >= first_id);
   }
-  /// Whether pixels that hold none keep what they have.
+  /// Whether pixels without a surface keep their values.
   [[nodiscard]] RASTRUM_HD bool keeps() const { return over || load; }
 };
 
-/// Colours that lie in the places of the keys of a surface.
+/// Colours in the places of a surface's keys.
 struct ColorsOfSurface {
   DeviceSurface surface;
   const Vec4* colors;
@@ -162,7 +160,7 @@ struct ColorsOfSurface {
 
 namespace cuda_detail {
 
-/// The colour of element i of a surface, 0 where nothing is.
+/// The colour of element i of a surface; 0 without a key.
 template <class Shade>
 struct ColorOfElement {
   SurfaceView keys;
@@ -175,7 +173,7 @@ struct ColorOfElement {
   }
 };
 
-/// The pixel of element i of the surface: a warp has half a block, so few triangles.
+/// The pixel of element i of the surface. A warp has half a block, so few triangles.
 template <class Shade>
 struct ResolvePixel {
   DeviceSurface surface;
@@ -184,7 +182,7 @@ struct ResolvePixel {
   ResolveRules rules;
   std::uint64_t* covered_sum;
   const std::uint64_t* held;
-  /// How many pixels of a thread hold a surface.
+  /// A thread's number of pixels with a surface.
   struct Local {
     std::uint32_t covered = 0;
   };
@@ -231,9 +229,9 @@ struct ResolvePixel {
 
 }  // namespace cuda_detail
 
-/// Fills `targets` from the keys of `surface`; where `rules` keep or are over something, they hold
-/// it. Adds how many pixels hold a surface to *covered, of the device. Does nothing where *held, of
-/// the device, is not 0; null: there is none. Work O(pixels).
+/// Fills `targets` from the keys of `surface`. Where `rules` keep or blend over something,
+/// `targets` must have it. Adds the number of pixels with a surface to *covered. Does nothing if
+/// *held is not 0; null: there is none. Both are on the device. Work O(pixels).
 template <class Exec, class Shade>
 void resolve_surface(Exec& exec, const DeviceSurface& surface, const DeviceTargets& targets,
                      const Shade& shade, const ResolveRules& rules, std::uint64_t* covered,
@@ -254,7 +252,7 @@ struct IsBeyond {
 }  // namespace cuda_detail
 
 /// Throws Error{invalid_argument} where `attribute`, spans of the device's, has fewer values than
-/// `mesh` reads. Waits where it has indices.
+/// `mesh` reads. Waits if it has indices.
 template <class Exec, class Attribute>
 void check_attribute(Exec& exec, const Attribute& attribute, const MeshView& mesh,
                      const char* what) {
@@ -272,8 +270,7 @@ void check_attribute(Exec& exec, const Attribute& attribute, const MeshView& mes
   require(parallel::reduce(exec, beyond, std::uint64_t{0}) == 0, " have an index out of range");
 }
 
-/// The arrays that the lit shaders read, on the device. `draws`: the host's. The result's spans
-/// live as long as `uploads`. Waits.
+/// The arrays of the lit shaders on the device. Its spans live as long as `uploads`. Waits.
 template <class Exec>
 class LitUpload {
  public:

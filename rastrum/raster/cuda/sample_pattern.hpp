@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The samples of a pixel (samples.hpp) by value, as kernels of a device take them.
+// A pixel's samples (samples.hpp) by value, for kernels of a device.
 #pragma once
 
 #include <algorithm>
@@ -14,9 +14,8 @@ namespace rastrum::raster {
 struct SamplePattern {
   int count = 1;
   SampleOffset at[kMaxSamples] = {};
-  SampleOffset least{}, most{};  ///< of all, in x and in y
+  SampleOffset least{}, most{};  ///< of all, in x and y
 
-  /// The pattern of 1, 4, 8 or 16 samples.
   [[nodiscard]] static SamplePattern of(int samples) {
     const std::span<const SampleOffset> offsets = sample_offsets(samples);
     SamplePattern p;
@@ -30,7 +29,7 @@ struct SamplePattern {
   }
 };
 
-/// The pixels of `view` of which the piece, as it lies at their centres, may cover a sample. May be
+/// The pixels of `view` where the piece, relative to pixel centres, may cover a sample. May be
 /// empty.
 [[nodiscard]] RASTRUM_HD inline Rect sampled_bounds(const Piece& piece, Rect view,
                                                     const SamplePattern& samples) {

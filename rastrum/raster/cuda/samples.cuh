@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Several samples a pixel on a device: the surface has a plane of keys for each sample
-// (cover.cuh); here they become colours, a plane each, and in the end one picture.
+// Several samples a pixel on a device. The surface has a plane of keys for each sample (cover.cuh).
+// Here they become planes of colours and then one picture.
 //
-// A triangle has one colour in a pixel, as on the host: that of the pixel's centre if the triangle
-// covers it, else of the first sample that it covers. A key does not say which that is, so the
-// triangle is assembled again: a thread that shades fetches its vertices anyhow. The opaque surface
-// is shaded once a triangle and pixel, layers once for four samples.
+// As on the host, a triangle has one colour in a pixel: at the centre or, if it misses that, at the
+// first sample that it covers. A key does not say which, so the triangle is assembled again: a
+// thread that shades reads its vertices anyway. The opaque surface is shaded once for each triangle
+// and pixel, layers once for four samples.
 #pragma once
 
 #include <cstddef>
@@ -19,13 +19,13 @@
 
 namespace rastrum::raster {
 
-/// Where a primitive is shaded in a pixel of which it covers a sample.
+/// Where a primitive is shaded in a pixel; it covers a sample of it.
 struct ShadingPlace {
   std::uint64_t key;  ///< there
   Vec2 from_centre;   ///< px
 };
 
-/// It holds the clipper.
+/// Out of line: it contains the clipper.
 [[nodiscard]] RASTRUM_HD_CALL ShadingPlace shading_place(const DeviceGeometry& geometry,
                                                          const SamplePattern& samples,
                                                          std::uint64_t id, int x, int y) {
@@ -38,7 +38,7 @@ struct ShadingPlace {
       if (!covers_centre(edges_of(piece), x, y)) return;
       constexpr float kPx = 1.0F / kSubpixels;
       const std::uint64_t key = make_key(depth_at(piece, x, y), piece.low);
-      // The nearest where the pieces of a clipped triangle overlap.
+      // The nearest, where pieces of a clipped triangle overlap.
       if (found && key <= place.key) return;
       place = {key, {static_cast<float>(at.x) * kPx, static_cast<float>(at.y) * kPx}};
       found = true;
@@ -49,8 +49,8 @@ struct ShadingPlace {
   return place;
 }
 
-/// Turns a shader that takes a place, (key, x, y, from_centre), into one that is asked at any
-/// sample, (key, x, y), whose key says no more than which primitive.
+/// Turns a shader with a place, (key, x, y, from_centre), into one for any sample, (key, x, y),
+/// whose key only names the primitive.
 template <class Shade>
 struct ShadedOnce {
   DeviceGeometry geometry;
@@ -60,8 +60,8 @@ struct ShadedOnce {
     const ShadingPlace place = shading_place(geometry, samples, id_of_key(key), x, y);
     return shade(place.key, x, y, place.from_centre);
   }
-  /// The same for a caller that has one of the primitive's pieces, as it lies at the pixels'
-  /// centres: most pieces cover them.
+  /// For a caller that has a piece of the primitive, relative to pixel centres: most pieces cover
+  /// them.
   RASTRUM_HD Vec4 operator()(const Piece& piece, std::uint64_t key, int x, int y) const {
     const ShadingPlace place =
         covers_centre(edges_of(piece), x, y)
@@ -69,7 +69,7 @@ struct ShadedOnce {
             : shading_place(geometry, samples, id_of_key(key), x, y);
     return shade(place.key, x, y, place.from_centre);
   }
-  /// The same with what was read of the primitive before.
+  /// With what was read of the primitive before.
   using Record = typename Shade::Record;
   RASTRUM_HD Vec4 operator()(const Piece& piece, const Record& record, std::uint64_t key, int x,
                              int y) const {
@@ -89,7 +89,7 @@ inline constexpr bool kIsShadedOnce<ShadedOnce<Shade>> = true;
 
 namespace cuda_detail {
 
-/// The colours of element i of all planes, 0 where nothing is.
+/// The colours of element i in all planes; 0 without a key.
 template <class Shade>
 struct ShadeSamples {
   DeviceSurface surface;
@@ -132,8 +132,8 @@ struct MeanOfSamples {
 
 }  // namespace cuda_detail
 
-/// The colours of an opaque surface, in planes as its keys. `shade`: (key, x, y) → premultiplied
-/// Vec4 of a primitive in a pixel (ShadedOnce). Work O(pixels · samples), each primitive of a pixel
+/// Colours of an opaque surface, in planes like its keys. `shade`: (key, x, y) → premultiplied Vec4
+/// of a primitive in a pixel (ShadedOnce). Work O(pixels · samples); each primitive of a pixel is
 /// shaded once.
 template <class Exec, class Shade>
 void shade_samples(Exec& exec, const DeviceSurface& surface, std::span<Vec4> colors,
@@ -142,8 +142,8 @@ void shade_samples(Exec& exec, const DeviceSurface& surface, std::span<Vec4> col
                            cuda_detail::ShadeSamples<Shade>{surface, colors.data(), shade});
 }
 
-/// Makes the first plane the picture: the largest key of a pixel's samples and their mean colour.
-/// Does nothing where *held, of the device, is not 0; null: there is none.
+/// Makes the first plane the picture: each pixel's largest key and mean colour. Does nothing if
+/// *held, on the device, is not 0; null: there is none.
 template <class Exec>
 void mean_of_samples(Exec& exec, const DeviceSurface& surface, std::span<Vec4> colors,
                      const std::uint64_t* held = nullptr) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which shadings and fragment tests of a frame a device has, and their arrays there. A caller's own
-// shader or discard function is code of the host's: such frames are shaded, or drawn, by the CPU.
+// Which of a frame's shadings and fragment tests a device has, and their arrays there. A caller's
+// own shader or discard function is host code: the CPU shades or draws such frames.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +16,8 @@
 
 namespace rastrum::raster {
 
-/// Whether a device has the form of it: of a lit model but `wireframe`, of one scene's materials,
-/// whatever their alpha.
+/// Whether a device has this shading: a lit model except `wireframe`, or one scene's materials with
+/// any alpha.
 [[nodiscard]] inline bool is_on_device(const Shading& shading) {
   if (const LitShading* const lit = shading.lit()) return LitOnDevice::has(lit->model);
   const MaterialShading* const material = shading.material();
@@ -25,7 +25,6 @@ namespace rastrum::raster {
          (shading.blending() == nullptr || shading.blending() == material->scene);
 }
 
-/// Whether some primitive is tested.
 [[nodiscard]] inline bool has_tests(const FrameRequest& request) {
   return request.has_tests() && std::ranges::any_of(request.draws, [](const Draw& draw) {
            return (draw.any_flags() & kMayDrop) != 0;
@@ -34,28 +33,27 @@ namespace rastrum::raster {
 [[nodiscard]] inline bool wants_colors(const Targets& t) {
   return !t.color8.empty() || !t.color.empty();
 }
-/// Whether no target, way to blend or shader of the frame lacks a form for the device. Only a
-/// caller's shader has extra targets; what is behind linear light is decoded by powers of the
-/// host's library.
+/// Whether a device has all targets, blending and the shader of the frame. Only a caller's shader
+/// has extra targets. To decode what is behind linear light takes powers from the host's library.
 [[nodiscard]] inline bool can_resolve(const FrameRequest& request) {
   const Targets& t = request.targets;
   if (!t.extra.empty() || (request.pass.over && request.linear_light)) return false;
   return !wants_colors(t) || is_on_device(request.shading);
 }
 
-/// Whether colours, alpha or tests are more than those of a lit shader.
+/// Whether colours, alpha or tests need more than a lit shader.
 [[nodiscard]] inline bool uses_materials(const FrameRequest& request) {
   const Shading& shading = request.shading;
   return has_tests(request) || (is_on_device(shading) &&
                                 (shading.material() != nullptr || shading.blending() != nullptr));
 }
 
-/// A frame's shader and test, for kernels. Waits when it is made.
+/// A frame's shader and test for kernels. Construction waits.
 template <class Exec>
 class DeviceShading {
  public:
-  /// `uploads` must outlive it. Colours are had where can_resolve(request), tests where they are
-  /// no caller's.
+  /// `uploads` must outlive it. Has colours if can_resolve(request), and tests unless they are a
+  /// caller's.
   DeviceShading(Exec& exec, Uploads<Exec>& uploads, DeviceTextures<Exec>& textures,
                 const FrameRequest& request)
       : is_linear_(request.linear_light), has_test_(has_tests(request)) {
@@ -86,8 +84,8 @@ class DeviceShading {
     return {geometry, masks_ ? masks_->view() : MaterialView{}, masks_.has_value(), behind, y0};
   }
 
-  /// Calls f(shade, test) with functors (key, x, y): to a premultiplied colour, and to whether the
-  /// fragment is there.
+  /// Calls f(shade, test) with functors of (key, x, y): a premultiplied colour, and whether the
+  /// fragment exists.
   template <class F>
   void with(const DeviceGeometry& geometry, const TestOnDevice& test, F&& f) const {
     const LitOnDevice lit{model_, geometry, lit_ ? lit_->view() : LitView{}, opacity_};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How a frame of a device is split, in bands of rows and batches of primitives, so that its memory
-// stays below a limit.
+// Splits a device's frame into bands of rows and batches of primitives, so that its memory stays
+// below a limit.
 #pragma once
 
 #include <algorithm>
@@ -19,25 +19,25 @@ namespace rastrum::raster {
 struct DeviceSplit {
   bool project_first = true;
   int band_rows = 0;             ///< whole tiles
-  std::uint64_t batch = 0;       ///< primitives that are set up at once
-  std::uint64_t written = 0;     ///< of those with larger pieces, whose pieces are there at once
-  std::uint64_t turn_bytes = 0;  ///< of blocks and what makes them (SurfaceDrawer), 0: any
-  /// Room of by-size's queues: pieces for teams, and tiles of large ones.
+  std::uint64_t batch = 0;       ///< primitives set up at once
+  std::uint64_t written = 0;     ///< those with larger pieces, whose pieces exist at once
+  std::uint64_t turn_bytes = 0;  ///< for blocks and what makes them (SurfaceDrawer); 0: any
+  /// Room of by-size's queues: pieces for teams, tiles of large ones.
   std::uint64_t queued_pieces = 0, queued_tiles = 0;
   std::uint64_t left_pieces = 0;  ///< room of LeftPieces
   std::uint64_t left_bytes = 0;   ///< for what is made of them, twice; 0: any
 
-  /// `limit`: bytes, 0 for any. `pixel_bytes`: what is kept of a pixel beside its key. `left`: how
-  /// many primitives have pieces that are left to others. Throws Error{out_of_memory} where not
-  /// even the least band fits.
+  /// `limit`: bytes, 0: any. `pixel_bytes`: kept for a pixel beside its key. `left`: the number of
+  /// primitives with pieces left to others. Throws Error{out_of_memory} if even the least band does
+  /// not fit.
   static DeviceSplit of(std::uint64_t limit, int width, int height, std::uint64_t primitives,
                         std::uint64_t vertices, std::uint64_t pixel_bytes, std::uint64_t left = 0) {
     constexpr std::uint64_t kLargestBatch = std::uint64_t{1} << 28;
     constexpr std::uint64_t kLeastShare = std::uint64_t{1} << 19;
-    // Full queues cost time: a piece or tile that does not fit is drawn by the thread that found
-    // it. Few of a picture's pieces are for teams, but where there are few pieces, all may be.
+    // Full queues cost time: the finding thread draws what does not fit. Few of a picture's pieces
+    // are for teams, but in a picture of few pieces all may be.
     constexpr std::uint64_t kPieces = std::uint64_t{1} << 16, kTiles = std::uint64_t{1} << 20;
-    // An outcome, its place and CUB's flags, or a place of by-size's queue of primitives; the
+    // An outcome, its place and CUB's flags, or a place in by-size's queue of primitives; the
     // pieces of a primitive and their places.
     constexpr std::uint64_t kSetUpBytes = 24, kWrittenBytes = kMaxPieces * (sizeof(Piece) + 8) + 16;
     DeviceSplit p;
@@ -45,7 +45,7 @@ struct DeviceSplit {
     p.batch = p.written = std::clamp<std::uint64_t>(primitives, 1, kLargestBatch);
     p.queued_pieces = kPieces + p.batch / 8;
     p.queued_tiles = kTiles;
-    // Only clipped primitives have more than one piece. Pieces are numbered in 32 bits.
+    // Only clipped primitives have several pieces. 32 bits number the pieces.
     constexpr std::uint64_t kMostLeft = std::uint64_t{1} << 31;
     if (left > 0) p.left_pieces = std::min(left + left / 8 + 1024, kMostLeft);
     if (limit == 0) return p;
@@ -70,8 +70,8 @@ struct DeviceSplit {
     p.queued_pieces = std::min(p.queued_pieces, share / 2 / sizeof(Piece));
     p.queued_tiles = std::min(p.queued_tiles, share / 2 / sizeof(std::uint64_t));
     p.turn_bytes = share / 2;
-    // While they are filled the batch takes a sixth of its share; while they are gone through, of
-    // the shares there is the vertices' alone.
+    // While the queue is filled the batch takes a sixth of its share. While it is walked only the
+    // vertices' share is in use.
     p.left_pieces = std::min(p.left_pieces, share / 2 / sizeof(Piece));
     p.left_bytes = share / 2;
     return p;

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pieces with a fragment test on a device: the keys of fragments that pass the test, by the blocks
-// of 8 × 8 pixels that a piece's box touches. A fragment that lies behind the key that is there
-// already is not tested. Order does not matter to a maximum of keys.
-//
-// Pieces come from a queue that the drawer of the others has filled (left_pieces.cuh), and the host
-// does not wait. Where there is none, or it was too small, they are made by a listing, batch by
-// batch.
+// Pieces with a fragment test on a device: keys of the fragments that pass, by the 8 × 8 blocks of
+// a piece's box. A fragment behind the present key is not tested. A maximum of keys does not depend
+// on order. Pieces come from a queue that the others' drawer filled (left_pieces.cuh), without the
+// host waiting. Without a queue, or if it was too small, a listing makes them by batches.
 #pragma once
 
 #include <algorithm>
@@ -41,8 +38,8 @@ struct BlocksOfBox {
     return static_cast<std::size_t>(BlocksOf(piece_bounds(piece, view)).count());
   }
 };
-/// Puts those fragments of block (bx, by) of a piece whose box in the view is `box` that the test
-/// keeps. Returns how many there are before the test.
+/// Puts the fragments of block (bx, by) that the test keeps; `box`: the piece's in the view.
+/// Returns their number before the test.
 template <class Test>
 RASTRUM_HD std::uint64_t draw_tested_block(const DeviceSurface& surface, const Test& test,
                                            const Piece& piece, Rect box, int bx, int by) {
@@ -52,7 +49,7 @@ RASTRUM_HD std::uint64_t draw_tested_block(const DeviceSurface& surface, const T
     const std::size_t at = surface.keys.index(bx, by) * 64 + static_cast<std::size_t>(i);
     if (surface.overdraw != nullptr) parallel::atomic_add(surface.overdraw[at], 1U);
     const std::uint64_t key = DeviceSurface::key(piece, bx, by, i);
-    // Others may raise it meanwhile: a key that is old only asks the test once more.
+    // Others may raise it meanwhile: an old key only costs one more test.
     if (key > surface.keys.keys[at] &&
         test(key, bx * kBlockSize + i % kBlockSize, by * kBlockSize + i / kBlockSize))
       parallel::atomic_maximum(surface.keys.keys[at], key);
@@ -73,7 +70,7 @@ struct DrawTested {
   }
 };
 
-/// The same for visit_blocks.
+/// For visit_blocks.
 template <class Test>
 struct VisitTested {
   DeviceSurface surface;
@@ -103,9 +100,9 @@ struct VisitTested {
 }  // namespace cuda_detail
 
 /// Draws the pieces of `scene` that have one of kMayDrop, and no flag of `skip`, onto the keys of
-/// `surface`, where test(key, x, y) holds. Returns the number of fragments before the test. The
-/// primitives' fates are counted by the SurfaceDrawer, and checked by the frame. Memory as of
-/// draw(). Work O(primitives + blocks of boxes + fragments). Waits.
+/// `surface` where test(key, x, y) holds. Returns the number of fragments before the test. The
+/// SurfaceDrawer counts the primitives' fates and the frame checks them. Memory as for draw(). Work
+/// O(primitives + blocks of boxes + fragments). Waits.
 template <class Exec, class Test>
 [[nodiscard]] std::uint64_t draw_tested(Exec& exec, const DeviceScene<Exec>& scene,
                                         const DeviceSurface& surface, const DeviceSplit& split,
@@ -139,8 +136,8 @@ template <class Exec, class Test>
   return parallel::to_host(exec, fragments)[0];
 }
 
-/// The same of pieces that lie in a queue; of all of them, or where some are missing of none. Adds
-/// to the BandSums at `sums`. Does not wait.
+/// For the pieces of a queue: all of them, or none if some are missing. Adds to the BandSums at
+/// `sums`. Does not wait.
 template <class Test>
 void draw_tested(parallel::Cuda& exec, const DeviceSurface& surface, const LeftPieces& left,
                  std::uint32_t skip, const Test& test, std::uint64_t* sums) {

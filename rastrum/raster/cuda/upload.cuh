@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A host's draws as a device's: the arrays are copied where they are new or were changed
-// (kept_arrays.cuh). A vertex stage that is no matrix over positions is run by the host's threads.
+// A host's draws as a device's. Arrays are copied if new or changed (kept_arrays.cuh). The host's
+// threads run a vertex stage that is not a matrix over positions.
 #pragma once
 
 #include <algorithm>
@@ -21,13 +21,11 @@
 
 namespace rastrum::raster {
 
-/// Copies of arrays on the device, for a frame. The arrays must stay until the stream was waited
-/// for.
+/// A frame's copies of arrays on the device. The arrays must stay until the stream was waited for.
 template <class Exec>
 class Uploads {
  public:
-  /// `in_place`: what it is given lies on the device already, and is not copied. `kept` outlives
-  /// it.
+  /// `in_place`: the arrays are on the device already and are not copied. `kept` must outlive this.
   Uploads(Exec& exec, KeptArrays<Exec>& kept, bool in_place)
       : exec_(&exec), kept_(&kept), in_place_(in_place) {
     kept.begin();
@@ -35,15 +33,14 @@ class Uploads {
 
   [[nodiscard]] bool in_place() const { return in_place_; }
 
-  /// The copy, which lives until the next frame. Does not wait.
+  /// The copy, valid until the next frame. Does not wait.
   template <class T>
   [[nodiscard]] std::span<const T> operator()(std::span<const T> host) {
     static_assert(std::is_trivially_copyable_v<T>);
     if (host.empty() || in_place_) return host;
     return {static_cast<const T*>((*kept_)(std::as_bytes(host))), host.size()};
   }
-  /// The copy of an array that this frame has made, and the next will make anew; lives as long as
-  /// this.
+  /// A copy of an array that each frame makes anew; lives as long as this.
   template <class T>
   [[nodiscard]] std::span<const T> once(std::span<const T> host) {
     static_assert(std::is_trivially_copyable_v<T>);
@@ -51,7 +48,7 @@ class Uploads {
     parallel::cuda_system::copy(exec_->stream(), copy.data(), host.data(), host.size_bytes());
     return {static_cast<const T*>(static_cast<const void*>(copy.data())), host.size()};
   }
-  /// Copies of views, which must be packed.
+  /// Copies of packed views.
   template <class T>
   [[nodiscard]] ArrayView<T> operator()(const ArrayView<T>& host) {
     return (*this)(host.packed());
@@ -68,7 +65,7 @@ class Uploads {
 
 namespace cuda_detail {
 
-/// Vertices that the host projects for a stage of its own.
+/// Vertices projected by the host for a stage of its own.
 struct HostVertices {
   std::vector<ProjectedVertex> projected;
   std::vector<Vec4d> clip;
@@ -89,7 +86,7 @@ struct HostVertices {
 
 }  // namespace cuda_detail
 
-/// The draws of a request on the device. `made` keeps what the host has made until the copies are.
+/// The draws of a request on the device. `made` keeps the host's results until they are copied.
 template <class Exec>
 [[nodiscard]] std::vector<DeviceDraw> upload(Uploads<Exec>& uploads, const FrameRequest& request,
                                              parallel::Threads& threads,

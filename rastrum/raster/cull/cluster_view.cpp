@@ -11,12 +11,11 @@ namespace {
 constexpr double kUlp = 0x1p-24;
 /// The error of clip coordinates, relative to the sum of their terms' sizes.
 constexpr double kClipError = 16 * kUlp;
-/// Far above what float32's subnormals lose, far below what a picture sees.
+/// Far above the loss by float32's subnormals, far below what a picture shows.
 constexpr double kTiny = 0x1p-120;
-/// Beyond this a float is taken as one that overflows.
+/// A larger float is taken to overflow.
 constexpr double kLargest = 0x1p120;
 
-/// Rows x, y and w without column j: its determinant, and the sum of its terms' sizes.
 struct Minor {
   double value, size;
 };
@@ -65,8 +64,8 @@ BoxPlace ClusterView::place(Vec3 min, Vec3 max) const {
     for (int c = 0; c < 8; ++c) corner[i][c] = (x[c & 1] + y[c >> 1 & 1]) + z[c >> 2];
   }
   const auto &cx = corner[0], &cy = corner[1], &cz = corner[2], &cw = corner[3];
-  // The largest of w + x and its kin, over the corners: all negative is outside; all least ones
-  // positive is inside.
+  // The extremes of w + x and the like over the corners. All negative: outside. All least ones
+  // positive: inside.
   double largest[6], least[6];
   std::fill_n(largest, 6, -std::numeric_limits<double>::infinity());
   std::fill_n(least, 6, std::numeric_limits<double>::infinity());
@@ -78,14 +77,14 @@ BoxPlace ClusterView::place(Vec3 min, Vec3 max) const {
       least[k] = least[k] < v[k] ? least[k] : v[k];
     }
   }
-  // A sum may hide a NaN from a comparison, an error that is not finite cannot.
+  // A comparison may miss a NaN in a sum, but not an error that is not finite.
   const double sizes = (error[0] + error[1]) + (error[2] + error[3]);
   if (!(sizes < kLargest)) return out;
   const double with_w[6] = {error[0] + error[3], error[0] + error[3], error[1] + error[3],
                             error[1] + error[3], error[2] + error[3], error[3]};
   bool inside = true;
   for (int k = 0; k < 6; ++k) {
-    // Twice: that the float32 values differ, and that they differ by 16u.
+    // Twice: the float32 values differ, and by 16u more.
     out.outside = out.outside || largest[k] < -2 * with_w[k];
     inside = inside && least[k] > 2 * with_w[k];
   }
@@ -120,7 +119,7 @@ BoxPlace ClusterView::place(Vec3 min, Vec3 max) const {
   out.z_error = of(2, out.z_ndc);
   const double left = x_min * hw + hw - out.x_error, right = x_max * hw + hw + out.x_error;
   const double top = hh - y_max * hh - out.y_error, bottom = hh - y_min * hh + out.y_error;
-  // Far within the guard band, and far from overflow.
+  // Well inside the guard band and far from overflow.
   if (!(left > kGuardMinPx + 1 && right < kGuardMaxPx - 1 && top > kGuardMinPx + 1 &&
         bottom < kGuardMaxPx - 1 && out.z_ndc + out.z_error < kLargest))
     return out;
@@ -129,7 +128,6 @@ BoxPlace ClusterView::place(Vec3 min, Vec3 max) const {
                 static_cast<int>(std::ceil(right + 0.5)),
                 static_cast<int>(std::ceil(bottom + 0.5))};
   out.z_range = (z_max - z_min) + 2 * out.z_error;
-  // Rounded upwards by the addition.
   out.highest = static_cast<float>(z_max + out.z_error + 0x1p-22 * out.z_ndc + kTiny);
   return out;
 }
@@ -148,14 +146,14 @@ bool ClusterView::faces_away(const MeshCluster& cluster, const BoxPlace& at, Cul
   if (!(distance > 0)) return false;
   const double unsure = eye_error_ + eye_w_error_ * (length(centre) + radius) +
                         0x1p-44 * (length(eye_) + std::abs(eye_w_) * length(centre));
-  // Front faces have D > 0; back ones are what is culled of Cull::back.
+  // Front faces have D > 0. Cull::back culls the others.
   const double side = cull == Cull::back ? -1 : 1;
   const double cos_phi =
       std::clamp(side * dot(Vec3d(cluster.axis), v) / (distance * length(Vec3d(cluster.axis))),
                  -1.0, 1.0) -
       1e-7;
   const double sin_phi = std::sqrt(std::max(0.0, 1 - cos_phi * cos_phi));
-  // cos(φ + α), which falls with φ as long as φ + α < π.
+  // cos(φ + α) falls with φ while φ + α < π.
   if (!(cos_phi > 0)) return false;
   const double f = distance * (cos_phi * cluster.cosine - sin_phi * cluster.sine - 1e-7) -
                    std::abs(eye_w_) * radius - unsure;
@@ -180,7 +178,7 @@ float ClusterView::highest_sample(const MeshCluster& cluster, const BoxPlace& at
   const double y = std::min(hh * steepest(1, at.y_ndc, at) * edge + 2 * at.y_error, height);
   const double change = std::min(steepest(2, at.z_ndc, at) * edge + 2 * at.z_error, at.z_range);
   const double bound = at.highest + 0.05 * change * x * y + 0x1p-22 * at.z_ndc;
-  // Rounded up; depths are cut to at least 0.
+  // Rounded up; depths are clamped to at least 0.
   return static_cast<float>(std::max(bound + 0x1p-23 * std::abs(bound), 0.0) + kTiny);
 }
 

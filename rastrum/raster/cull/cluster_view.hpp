@@ -1,26 +1,25 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Facts about a cluster that a frame may find before it sets up a triangle: that all triangles lie
-// outside of the picture, that all face away, or where on the screen and how near any sample of
-// them can be.
+// Facts that a frame may find about a cluster before it sets up a triangle: all triangles are
+// outside of the picture, all face away, or where on the screen and how near a sample can be.
 //
 // Exactness. A cluster may be left out only where setting it up would change no key. Setup
 // transforms in float32 (float64 for wide positions), divides, snaps to 1/256 px and evaluates
-// planes in float32; the bounds here are in float64 over the box of the object-space vertices, with
+// planes in float32. The bounds here are in float64 over the box of the object-space vertices, with
 // margins for all of that. u = 2⁻²⁴ is float32's rounding.
 //
 // 1. Clip coordinates. A row is ((m₀x + m₁y) + m₂z) + m₃ with four roundings of products and three
-//    of sums: the float32 value differs from the exact one of the rounded matrix by less than 4u S,
+//    of sums. The float32 value differs from the exact one of the rounded matrix by less than 4u S,
 //    S = Σ |mᵢ| max|pᵢ| + |m₃|, and from that of the unrounded one by u S more. δ = 2⁻²⁰ S = 16u S
-//    holds of either, with the roundings of float64 here and tiny for subnormals.
-// 2. Outside. All boxes' corners have x + w ≤ −(δx + δw) − 16u S, so all vertices have x/w ≤
-//    −(1 + 16u) in float32, or w ≤ 0. One that is projected has px = fl(fl(fl(x · fl(1/w)) · hw)
-//    + hw) ≤ 0: three roundings of u each do not undo 16u. It snaps to at most 0, and no sample of
-//    a pixel of the picture lies left of 0, and what touches 0 from the left does not cover there
-//    (top-left). Where a vertex needs the clipper, its corners in float64 are between vertices of
-//    which the same holds, with 2⁻⁵³ for u. The other three sides likewise; z − w ≥ … is behind the
-//    near plane, where the clipper leaves nothing, as of w ≤ −δw. Nothing is cut at the far plane.
-// 3. Whole. The other tests want clusters no vertex of which needs the clipper: w > 0, z ≤ w and
-//    the guard band, by the same margins.
+//    bounds both, with the roundings of float64 here and a tiny term for subnormals.
+// 2. Outside. All corners of the box have x + w ≤ −(δx + δw) − 16u S, so all vertices have x/w ≤
+//    −(1 + 16u) in float32, or w ≤ 0. A projected one has px = fl(fl(fl(x · fl(1/w)) · hw) + hw)
+//    ≤ 0: three roundings of u each do not undo 16u. It snaps to at most 0. No sample of the
+//    picture lies left of 0, and what touches 0 from the left does not cover there (top-left).
+//    Where a vertex needs the clipper, its float64 corners lie between vertices for which the same
+//    holds, with 2⁻⁵³ for u. The other three sides likewise. Behind the near plane (z − w ≥ …) and
+//    for w ≤ −δw the clipper leaves nothing. Nothing is cut at the far plane.
+// 3. Whole. The other tests want clusters without a vertex that needs the clipper: w > 0, z ≤ w and
+//    the guard band, with the same margins.
 // 4. Places. px of a box are those of its corners (x/w is a projective map, w > 0). A vertex is off
 //    by at most ε = 1/512 (snapping) + hw ((δx + X δw)/w + 2⁻²¹(X + 1)), X = max |x/w|.
 // 5. Away. D = det(x, y, w of the corners) = n · (E − e p₀), n the cross product of the triangle's
@@ -28,14 +27,14 @@
 //    and ball D/|n| ≥ f = |v| cos(φ + α) − |e| r, v = E − e c. Twice the area on the screen is hw
 //    hh D / (w₀w₁w₂) ≥ f |n| hw hh / w³max, |n| = L h (longest edge and least height). Snapping
 //    moves corners by ε, and edges are at most Gx L and Gy L long there, G the largest change of px
-//    with a step in object space: the area's sign is kept where f L h hw hh / w³ > 4 L (Gx εy +
+//    with a step in object space. The area keeps its sign where f L h hw hh / w³ > 4 L (Gx εy +
 //    Gy εx) + 8 εx εy. So tiny triangles, whose orientation snapping may turn, are not left out.
 // 6. Depth. A covered sample lies in the snapped triangle, where the exact plane has at most the
 //    greatest depth of its corners: Z + (δz + Z δw)/w + 2⁻²² Z. Setup's plane has slopes of at most
 //    2 Δ E/|det| per 1/256 px (Δ: the difference of the corners' depths, E their distance in 1/256
-//    px, |det| ≥ 1), rounded to float32; their products with a distance in the triangle and two
+//    px, |det| ≥ 1), rounded to float32. Their products with a distance in the triangle and two
 //    sums are off by at most u (10 Δ Ex Ey + 2 Z), in px 0.04 Δ Ex Ey: 0.05 is taken. A sliver may
-//    reach that; others are better by their area.
+//    reach that; larger areas do better.
 #pragma once
 
 #include <cstdint>
@@ -48,13 +47,13 @@
 
 namespace rastrum::raster {
 
-/// Where a box lies, as far as asked.
+/// A box's place, as far as the flags say.
 struct BoxPlace {
   bool outside = false;  ///< no triangle in it is drawn
-  bool inside = false;   ///< no part of it is outside, and nothing of it needs the clipper
+  bool inside = false;   ///< none of it is outside or needs the clipper
   bool whole = false;    ///< no vertex in it needs the clipper; then:
-  Rect pixels{};         ///< of which a sample may be covered, not cut to the picture
-  float highest = 0;     ///< no vertex in it is nearer, as float32 finds its depth
+  Rect pixels{};         ///< where a sample may be covered, not cut to the picture
+  float highest = 0;     ///< no vertex is nearer, by float32's depth
   double w_min = 0, w_max = 0;
   double x_ndc = 0, y_ndc = 0, z_ndc = 0;        ///< the largest |x/w|, |y/w|, |z/w|
   double z_range = 0;                            ///< the largest difference of depths
@@ -64,26 +63,26 @@ struct BoxPlace {
 /// One transform of a mesh to the screen.
 class ClusterView {
  public:
-  /// `to_clip`: as vertices are transformed: rounded to float32, unless they are wide. Without
-  /// `faces` nobody asks how clusters face, which takes as long as a place.
+  /// `to_clip`: as it transforms vertices: rounded to float32, unless they are wide. `faces`:
+  /// faces_away and leans_away will be called; preparing them takes as long as a place.
   ClusterView(const Mat4d& to_clip, bool wide, Viewport viewport, bool faces = true);
 
   [[nodiscard]] BoxPlace place(Vec3 min, Vec3 max) const;
-  /// Whether all its triangles are culled for how they face. `at`: its box's place, whole.
+  /// Whether facing culls all its triangles. `at`: its box's place, whole.
   [[nodiscard]] bool faces_away(const MeshCluster& cluster, const BoxPlace& at, Cull cull) const;
-  /// Whether most of it seems to face away. A hint.
+  /// A hint: most of it seems to face away.
   [[nodiscard]] bool leans_away(const MeshCluster& cluster) const;
   /// No sample of its triangles is nearer. `at`: its box's place, whole.
   [[nodiscard]] float highest_sample(const MeshCluster& cluster, const BoxPlace& at) const;
 
  private:
-  /// The largest change of a coordinate over w, of row `row`, with a step of length 1.
+  /// The largest change of (row `row`) / w with a step of length 1.
   [[nodiscard]] double steepest(int row, double ndc, const BoxPlace& at) const;
 
   Mat4d m_;
   Viewport viewport_;
-  double rows_[4];  ///< lengths of the rows' first three
-  Vec3d eye_{};     ///< (E, e) of the above, and how unsure it is
+  double rows_[4];  ///< lengths of the rows' first three elements
+  Vec3d eye_{};     ///< (E, e) of the above, and error bounds
   double eye_w_ = 0, eye_error_ = 0, eye_w_error_ = 0;
 };
 

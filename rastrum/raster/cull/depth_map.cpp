@@ -45,7 +45,7 @@ void DepthMap::look(const Kernels& kernel, const SurfaceView& surface, Rect bin)
     const std::uint64_t* const keys = surface.block(bx, by);
     if ((bx + 1) * kBlockSize <= bin.x1 && (by + 1) * kBlockSize <= bin.y1)
       return depth_of_key(kernel.lowest(keys));
-    // Samples beyond the part count as hiding everything.
+    // Samples outside of the part count as hiding everything.
     std::uint64_t lowest = std::numeric_limits<std::uint64_t>::max();
     for (std::uint64_t m = samples_inside(bin, bx, by); m != 0; m &= m - 1)
       lowest = std::min(lowest, keys[std::countr_zero(m)]);

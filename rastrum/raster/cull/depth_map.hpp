@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The farthest that is seen in each block of a view, by which clusters are hidden before they are
-// set up (Greene, Kass and Miller, "Hierarchical Z-buffer visibility", 1993).
+// The farthest visible depth in each block of a view. It hides clusters before they are set up
+// (Greene, Kass and Miller, "Hierarchical Z-buffer visibility", 1993).
 #pragma once
 
 #include <cstddef>
@@ -17,27 +17,27 @@ class DepthMap {
  public:
   explicit DepthMap(MemoryAccount& memory) : block_(memory), bin_(memory) {}
 
-  /// Begins with `view`, which begins at a corner of a bin; nothing is known of it then.
+  /// Begins with an unknown `view`, which must start at a corner of a bin.
   void begin(Rect view);
-  /// Looks at the keys of a bin of the view, or of a part of one: then the bound of the whole bin
-  /// stays as it was, and still holds. Thread-safe for distinct parts.
+  /// Takes the keys of a bin of the view or of a part of it. From a part the bound of the whole bin
+  /// does not change, and still holds. Thread-safe for distinct parts.
   void look(const Kernels& kernel, const SurfaceView& surface, Rect bin);
-  /// The same from bounds of the bin's blocks.
+  /// The same, from bounds of the bin's blocks.
   void look(const DepthBounds& bounds, Rect bin);
   /// Copies what is known of a bin into `bounds`.
   void recall(DepthBounds& bounds, Rect bin) const;
-  /// Whether every sample in the view that the candidate may cover has a key of a nearer surface:
-  /// strictly, so that it cannot win a tie.
+  /// Whether every sample in the view that the candidate may cover has a strictly nearer key, so
+  /// that the candidate cannot win a tie.
   [[nodiscard]] bool hides(const Candidate& candidate) const;
 
  private:
   Rect view_{};
   std::size_t columns_ = 0, bin_columns_ = 0;
-  /// Notes for each block of a bin the `depth(bx, by)` than which no sample there is farther.
+  /// Stores depth(bx, by) for each block of a bin: no sample there is farther.
   template <class Depth>
   void put(Rect bin, const Depth& depth);
 
-  ScratchBuffer<float> block_, bin_;  ///< 0: something is seen there through all
+  ScratchBuffer<float> block_, bin_;  ///< 0: some sample has no surface, or nothing is known
 };
 
 }  // namespace rastrum::raster

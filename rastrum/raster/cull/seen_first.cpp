@@ -14,7 +14,7 @@ bool SeenFirst::choose(FrameContext& frame, std::uint64_t first, std::uint64_t l
     looks = wait_ == 0;
     if (!looks) --wait_;
   }
-  // Copies are joined to long runs where nobody looks at each, and where memory is planned.
+  // Copies are joined to long runs where none is tested alone, and where memory is planned.
   selection_.choose(frame, looks && !frame.plans_memory());
   frame.watch.lap(frame.stats, "choose");
   looks = looks && (selection_.always() || selection_.triangles() >= kLeastTriangles);
@@ -35,7 +35,7 @@ void SeenFirst::for_each(const FrameContext& frame, const F& f) {
   });
 }
 
-/// The runs of those that are in a state, in order; neighbours go together.
+/// The joined runs of the candidates in a state, in order.
 std::span<const SetupRun> SeenFirst::collect(const FrameContext& frame, State state) {
   const std::span<const Candidate> all = selection_.candidates();
   for_each(frame, [&](std::size_t i, Part& own) {
@@ -90,11 +90,10 @@ std::span<const SetupRun> SeenFirst::rest(FrameContext& frame) {
 
 void SeenFirst::finish(FrameContext& frame, std::uint64_t cost) {
   const std::span<const Candidate> all = selection_.candidates();
-  // A cluster that the whole picture hides need not be drawn first the next time.
+  // The next frame need not first draw a cluster that the whole picture hides.
   for_each(frame, [&](std::size_t i, Part& own) {
     if (!all[i].has_slot()) return;
-    // Clusters that were left out count as hidden; so do those that were drawn although they are
-    // hidden.
+    // Clusters that were left out count as hidden, and so do those that were drawn but are hidden.
     if (state_[i] != State::hidden && depths_.hides(all[i])) state_[i] = State::hidden;
     if (state_[i] == State::hidden) {
       own.hidden += all[i].run.count;
@@ -109,7 +108,7 @@ void SeenFirst::finish(FrameContext& frame, std::uint64_t cost) {
     sum.missed += own.missed;
     sum.hidden += own.hidden;
   }
-  // A camera that jumped sees other clusters than the last frame did.
+  // After a camera's jump the clusters seen are not those of the last frame.
   is_hinted_ = sum.missed * kWorth < sum.drawn;
   seen_.begin(selection_);
   for_each(frame, [&](std::size_t i, Part&) {

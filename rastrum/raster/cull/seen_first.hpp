@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// In which order a frame draws what may be hidden: first the clusters that the last one saw, then
-// those that are not hidden by that (Greene, Kass and Miller, "Hierarchical Z-buffer visibility",
-// 1993). A method draws the first ones, looks at what is seen, and draws the rest; it keeps keys
-// of the whole view between the two.
+// The order in which a frame draws what may be hidden: first the clusters that the last frame saw,
+// then those that these do not hide (Greene, Kass and Miller, "Hierarchical Z-buffer visibility",
+// 1993). A method draws the first, finds the depths seen, and draws the rest. It keeps keys of the
+// whole view between the two.
 #pragma once
 
 #include <cstddef>
@@ -16,11 +16,10 @@
 
 namespace rastrum::raster {
 
-/// Which clusters were seen in the frame before, so that they are drawn first in this one. A hint:
-/// whatever it says, all that may be seen is drawn.
+/// The clusters that the last frame saw, to be drawn first in this one. Only a hint: all that may
+/// be seen is drawn.
 class LastSeen {
  public:
-  /// Whether something is known of the frame's clusters.
   [[nodiscard]] bool knows(const Selection& now) const {
     return fingerprint_ == now.fingerprint() && slots_ == now.slots();
   }
@@ -42,28 +41,28 @@ class SeenFirst {
  public:
   explicit SeenFirst(MemoryAccount& memory) : selection_(memory), depths_(memory), runs_(memory) {}
 
-  /// Chooses among triangles [first, last) of the frame. Returns whether to look for hidden ones,
-  /// which no frame does without `may_look`: there are so many triangles that it can pay, and where
-  /// it did not in the frame that last looked, it is tried only now and then.
+  /// Chooses among triangles [first, last) of the frame. Returns whether to test for hidden ones:
+  /// if `may_look`, and there are so many triangles that it can pay. After a frame where it did not
+  /// pay it is tried only now and then.
   [[nodiscard]] bool choose(FrameContext& frame, std::uint64_t first, std::uint64_t last,
                             bool may_look);
-  /// All that was chosen, for a frame that does not look for hidden ones.
+  /// All that was chosen, for a frame that does not test for hidden ones.
   [[nodiscard]] std::span<const SetupRun> all() { return selection_.runs(); }
 
-  /// The runs to draw first. Nothing is known of depths() then.
+  /// The runs to draw first. depths() knows nothing yet.
   [[nodiscard]] std::span<const SetupRun> first(const FrameContext& frame);
-  /// The rest, as far as depths() do not hide it.
+  /// Without what depths() hides.
   [[nodiscard]] std::span<const SetupRun> rest(FrameContext& frame);
-  /// After all of it: learns for the next frame. `cost`: of keeping keys and looking at them, in
-  /// triangles that might be set up instead.
+  /// After all of it: learns for the next frame. `cost`: of keeping and testing keys, in triangles
+  /// that might be set up instead.
   void finish(FrameContext& frame, std::uint64_t cost);
 
-  /// The caller tells it what is seen in each bin.
+  /// The caller stores here what is seen in each bin.
   [[nodiscard]] DepthMap& depths() { return depths_; }
 
  private:
   enum class State : std::uint8_t { first, later, hidden };
-  /// Some candidates, one after the other, so that tasks are large.
+  /// Consecutive candidates, enough for a large task.
   struct Part {
     std::size_t runs = 0, first_run = 0;
     SetupRun last{.cluster = 0};
@@ -73,13 +72,11 @@ class SeenFirst {
   void for_each(const FrameContext& frame, const F& f);
   std::span<const SetupRun> collect(const FrameContext& frame, State state);
 
-  /// Fewer triangles are set up sooner than keys of a picture are kept.
+  /// Setting up fewer triangles is faster than keeping a picture's keys.
   static constexpr std::uint64_t kLeastTriangles = 50'000;
-  /// Frames at most that do not look after one that found too little: 1, 3, 7 and so on, each time
-  /// in a row.
+  /// Most frames in a row without a test, after tests that found too little: 1, 3, 7 and so on.
   static constexpr int kMostWaits = 15;
-  /// Where more than this part of what is seen was not seen before, which clusters face the viewer
-  /// is the better hint.
+  /// Beyond this part (1/kWorth) of newly seen clusters, facing the viewer is the better hint.
   static constexpr std::uint64_t kWorth = 8;
 
   Selection selection_;
@@ -90,9 +87,9 @@ class SeenFirst {
   std::vector<Part> parts_;
   std::size_t at_once_ = 1;  ///< candidates of a part
   bool knows_ = false;
-  bool is_hinted_ = true;     ///< what the last frame saw tells what this one sees
-  double seen_part_ = 1;      ///< of the triangles of the last frame that looked
-  int waits_ = 0, wait_ = 0;  ///< after the last frame that looked, and still
+  bool is_hinted_ = true;     ///< what the last frame saw predicts this one
+  double seen_part_ = 1;      ///< part of the triangles that the last frame with a test saw
+  int waits_ = 0, wait_ = 0;  ///< frames without a test: in all, and still to come
 };
 
 }  // namespace rastrum::raster

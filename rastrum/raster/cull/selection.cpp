@@ -8,16 +8,16 @@
 namespace rastrum::raster {
 namespace {
 
-/// Slots of a task: some 50 µs, or less where many threads would have less than some tasks each.
+/// Slots of a task: some 50 µs, or fewer where many threads would have too few tasks.
 constexpr std::uint64_t kSlotsAtOnce = 1024, kLeastAtOnce = 64, kTasksOfThread = 4;
-/// Triangles of a plain run, so that runs can be dealt out.
+/// Triangles of a plain run, so that runs can be shared out.
 constexpr std::uint64_t kPlainRun = 4096;
 
-/// Where clusters have so many vertices to each of the mesh, all of them are projected sooner in
-/// order than cluster by cluster, whose results are scattered over the memory of the mesh's.
+/// With this many cluster vertices for each mesh vertex, projecting the whole mesh in order is
+/// faster than cluster by cluster, which scatters its results over the mesh's memory.
 constexpr double kWorthAll = 0.65;
 
-/// Whether slots are copies: so it is for small meshes, since a batch of setup takes several
+/// Whether slots are copies. They are for small meshes, since a batch of setup takes several
 /// copies.
 bool is_by_copies(const Draw& draw) {
   return is_projected_at_once(draw) && !draw.clusters->way.always;
@@ -34,12 +34,11 @@ std::uint64_t slots_of(const Draw& draw) {
 struct Selection::Part {
   const Draw* draw = nullptr;
   std::uint64_t begin = 0, end = 0;   ///< slots of the draw; plain: ids
-  std::uint64_t first_slot = 0;       ///< of the draw, in the frame
-  std::uint64_t first = 0, last = 0;  ///< ids that are chosen of
+  std::uint64_t first_slot = 0;       ///< the draw's first slot in the frame
+  std::uint64_t first = 0, last = 0;  ///< the range of ids to choose from
   bool plain = false;
-  // Results: what was chosen and left out.
   Found* found = nullptr;
-  std::size_t at = 0, count = 0, to = 0;  ///< in `found`, and where they go
+  std::size_t at = 0, count = 0, to = 0;  ///< in `found`, and where they go in the end
   std::uint64_t triangles = 0, outside = 0, away = 0;
 };
 
@@ -180,7 +179,7 @@ void Selection::choose_of(const FrameContext& frame, Part& part, Found& found, b
     return box.finite ? view.place(box.min, box.max) : BoxPlace{};
   };
   const auto is_chosen = [&](std::uint64_t id) { return id >= part.first && id < part.last; };
-  // Notes what the test against depths needs to know of a place in the picture.
+  // Notes what the depth test needs to know about a place in the picture.
   const auto see = [&](const ClusterView& view, const MeshCluster& c, const BoxPlace& at,
                        Candidate& candidate) {
     const Rect seen{std::max(at.pixels.x0, image.x0), std::max(at.pixels.y0, image.y0),
@@ -217,7 +216,7 @@ void Selection::choose_of(const FrameContext& frame, Part& part, Found& found, b
         found.add(candidate);
         continue;
       }
-      // Neighbours go together, as many as make a plain run.
+      // Joins neighbours, up to a plain run.
       if (found.count == part.at || !join(found.list[found.count - 1].run, candidate.run))
         found.add(candidate);
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which triangles of a frame are set up: all of what is drawn as it comes, and of prepared meshes
-// the clusters of which something may be seen.
+// Which triangles of a frame are set up: all of plain draws, and of prepared meshes the clusters
+// that may be visible.
 #pragma once
 
 #include <cstddef>
@@ -16,54 +16,51 @@
 
 namespace rastrum::raster {
 
-/// A run that passed, and what the test against depths asks of it.
+/// A chosen run, and what the depth test needs to know about it.
 struct Candidate {
   static constexpr std::uint64_t kNoSlot = ~std::uint64_t{0};
 
   SetupRun run;
-  std::uint64_t slot = kNoSlot;  ///< which cluster of the frame it is, or copy of a small mesh
-  float highest = 0;             ///< no sample is nearer; infinity: not known
-  bool leans_away = false;       ///< as a hint: of a closed surface it is likely to be hidden
-  bool leans = true;             ///< copies do not: leans_away says nothing of them
-  std::uint16_t bx0 = 0, by0 = 0, bx1 = 0, by1 = 0;  ///< the blocks that it may touch; none: all
+  std::uint64_t slot = kNoSlot;  ///< its cluster of the frame, or copy of a small mesh
+  float highest = 0;             ///< no sample is nearer; infinity: unknown
+  bool leans_away = false;       ///< a hint: in a closed surface it is likely hidden
+  bool leans = true;             ///< copies do not: leans_away says nothing about them
+  std::uint16_t bx0 = 0, by0 = 0, bx1 = 0, by1 = 0;  ///< blocks that it may touch; none: all
 
-  /// False: it is drawn in any case.
+  /// False: always drawn.
   [[nodiscard]] bool has_slot() const { return slot != kNoSlot; }
 };
 
-/// Puts `next` into the run before it where it goes on with the same, as far as plain runs go.
-/// Returns whether it did.
+/// Joins `next` to the run before it if it continues it, up to the size of a plain run. Returns
+/// whether it did.
 [[nodiscard]] bool join(SetupRun& before, const SetupRun& next);
 
-/// Chooses the triangles to set up: those outside of the picture or facing away are left out,
-/// instances first.
+/// Leaves out what is outside of the picture or faces away, instances first.
 class Selection {
  public:
   explicit Selection(MemoryAccount& memory);
   Selection(Selection&&) = delete;
   ~Selection();
 
-  /// Takes the frame's triangles [first, last). slots(), always() and fingerprint() are known then.
+  /// Takes the frame's triangles [first, last). Then slots(), always() and fingerprint() are known.
   void begin(const FrameContext& frame, std::uint64_t first, std::uint64_t last);
-  /// Chooses among them. Counts the triangles that were left out. `copies`: copies of small meshes
-  /// are candidates of their own, since some may be hidden.
+  /// Chooses among them, and counts the triangles left out. `copies`: copies of small meshes are
+  /// candidates of their own, since some may be hidden.
   void choose(FrameContext& frame, bool copies);
-  /// Projects all vertices of a draw where vertices are kept and so many triangles are drawn, a
-  /// `part` of those that were chosen, that it is sooner than cluster by cluster.
+  /// Projects all vertices of a draw where that is faster than cluster by cluster: vertices are
+  /// kept, and enough triangles are drawn. `part`: how much of the chosen is drawn.
   void project(const FrameContext& frame, double part) const;
   /// In the order of draws, copies and clusters.
   [[nodiscard]] std::span<const Candidate> candidates() const {
     return {candidates_.data(), count_};
   }
-  /// The runs of all of them.
   [[nodiscard]] std::span<const SetupRun> runs();
-  /// How many triangles the candidates have.
   [[nodiscard]] std::uint64_t triangles() const { return triangles_; }
-  /// How many clusters, or copies of small meshes, the draws have.
+  /// Clusters, or copies of small meshes, of all draws.
   [[nodiscard]] std::uint64_t slots() const { return slots_; }
-  /// Whether some mesh wants to be looked behind (MeshClusters::Way).
+  /// Whether some mesh always wants depth tests (MeshClusters::Way).
   [[nodiscard]] bool always() const { return always_; }
-  /// Tells frames of other meshes apart, as far as a hint has to.
+  /// Differs for frames of other meshes, as well as a hint needs.
   [[nodiscard]] std::uint64_t fingerprint() const { return fingerprint_; }
 
  private:
@@ -80,9 +77,8 @@ class Selection {
   parallel::ScratchPool<Found> found_;
 };
 
-/// Whether some draw goes by clusters.
 [[nodiscard]] bool has_clusters(const FrameRequest& request);
-/// Takes the clusters from draws that cannot go by them.
+/// Removes the clusters of draws that cannot be drawn by them.
 void keep_clusters(std::span<Draw> draws, bool by_clusters);
 
 }  // namespace rastrum::raster

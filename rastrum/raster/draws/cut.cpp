@@ -14,7 +14,7 @@
 namespace rastrum::raster {
 namespace {
 
-/// A ball that holds a part of a quadric is told apart from a plane by its radius and a little.
+/// The balls about its ends, enlarged a little, tell on which side of a plane a quadric lies.
 std::uint32_t quadric_cut_flags(const DrawCut& cut, const QuadricStage& stage,
                                 std::uint64_t primitive) {
   QuadricShape shape;
@@ -27,13 +27,13 @@ std::uint32_t quadric_cut_flags(const DrawCut& cut, const QuadricStage& stage,
                              DrawCut::ahead(plane, has_two ? shape.p1 : shape.p0)};
     const double reach[2] = {shape.r0 * scale, (has_two ? shape.r1 : shape.r0) * scale};
     if (ahead[0] < -reach[0] && ahead[1] < -reach[1]) return kCutAway;
-    // Written so that a NaN is asked about at each fragment.
+    // A NaN makes each fragment be tested.
     if (!(ahead[0] > reach[0] && ahead[1] > reach[1])) flags = kCut;
   }
   return flags;
 }
 
-/// Where sample `i` of a block is looked at.
+/// Where sample `i` of a block is tested.
 struct SamplePlace {
   int x, y;
   Vec2 from_centre;
@@ -131,7 +131,7 @@ std::uint64_t in_front(const FrameGeometry& frame, const Piece& piece, const Blo
     }
     [[nodiscard]] double at(double x, double y) const { return p * x + q * y + r; }
   };
-  // The weights of a clipped triangle may all be negative.
+  // A clipped triangle may have only negative weights.
   Linear all;
   for (int c = 0; c < corners; ++c) all.add(w, c, 1);
   std::uint64_t mask = block.mask;
@@ -145,7 +145,7 @@ std::uint64_t in_front(const FrameGeometry& frame, const Piece& piece, const Blo
       const double x = sample.x + 0.5 - w.x0 + static_cast<double>(sample.from_centre.x);
       const double y = sample.y + 0.5 - w.y0 + static_cast<double>(sample.from_centre.y);
       const double value = ahead.at(x, y);
-      // Written so that a NaN is not kept.
+      // A NaN is not kept.
       if (!(all.at(x, y) < 0 ? value <= 0 : value >= 0)) mask ^= std::uint64_t{1} << i;
     }
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A draw of the pipeline: points, lines or triangles over vertices from any source, or quadrics.
+// A draw of the pipeline: points, lines or triangles with vertices from any source, or quadrics.
 #pragma once
 
 #include <cstddef>
@@ -22,56 +22,54 @@ namespace rastrum::raster {
 
 struct DrawCut;
 
-/// A mesh that is drawn many times, under one matrix after the other: the draw has its triangles
-/// and vertices once more for each copy, copy after copy.
+/// A mesh drawn many times, under one matrix after the other. The draw has its triangles and
+/// vertices once for each copy, copy after copy.
 struct Copies {
   std::uint64_t count = 1;
-  std::uint64_t primitives = 0;  ///< of one copy, as `vertices`; 0 where there is only one
+  std::uint64_t primitives = 0;  ///< of one copy, like `vertices`; 0 if there is only one
   std::uint32_t vertices = 0;
 };
 
-/// Stands for a place in FrameGeometry::projected where a draw has none.
+/// A draw's first vertex where it has no place in FrameGeometry::projected.
 inline constexpr std::size_t kNotProjected = ~std::size_t{0};
 
-/// Primitives over one vertex stage. Their flags become those of its pieces.
+/// Primitives with one vertex stage. Their flags become those of its pieces.
 struct Draw : Primitives {
   Draw() = default;
   Draw(const ProgramDraw& draw);
 
-  VertexStage source;  ///< must be set where `quadrics` is not
-  /// The primitives are these; they have no vertices, and the topology says nothing.
+  VertexStage source;  ///< must be set without `quadrics`
+  /// The primitives, if set. They have no vertices, and the topology says nothing.
   const QuadricStage* quadrics = nullptr;
-  /// Flags by material, so that a mesh of several materials needs no draw for each: triangle t has
-  /// the flags of material_flags[face_materials[t]], too. Both are set or neither.
-  IndexView face_materials{};  ///< of the faces of a mesh where there is one
+  /// Flags by material, so that a mesh of several materials needs one draw: triangle t also has the
+  /// flags material_flags[face_materials[t]]. Both are set or neither.
+  IndexView face_materials{};  ///< of the faces of a mesh, if there is one
   std::span<const std::uint32_t> material_flags{};
-  /// The mesh whose triangles are drawn where they are no packed list (MeshView::faces, indices of
-  /// other types); it must outlive the frame. Null: `indices` has the corners. Only the host reads
-  /// it.
+  /// The mesh of the triangles where they are no packed list (MeshView::faces, indices of other
+  /// types). It must outlive the frame. Null: `indices` has the corners. For the host only.
   const MeshView* mesh = nullptr;
-  /// The same for the points or lines of a scene, and for the sizes of points. At most one of the
-  /// three is set.
+  /// The same for points or lines of a scene and for sizes of points. At most one of the three is
+  /// set.
   const PointsView* points = nullptr;
   const LinesView* lines = nullptr;
   /// The clusters of a prepared mesh in frames that draw by clusters (cull/selection.hpp), else
-  /// null. Only the host reads them.
+  /// null. For the host only.
   const MeshClusters* clusters = nullptr;
-  Copies copies{};      ///< of the mesh; the host's alone
+  Copies copies{};      ///< of the mesh; for the host only
   bool visible = true;  ///< else its primitives are culled
-  /// The draw's own shader and the test of its fragments where `flags` has kTested. Empty: those
-  /// that the whole frame was given.
+  /// The draw's own shader, and the test of its fragments where `flags` has kTested. Empty: the
+  /// frame's.
   Shading shading;
   Testing test;
-  const DrawCut* cut = nullptr;  ///< its clip planes (cut.hpp), which must outlive the frame
+  const DrawCut* cut = nullptr;  ///< its clip planes (cut.hpp); must outlive the frame
 
   // Filled by the pipeline.
   std::uint64_t first_id = 0;
-  std::size_t first_vertex = 0;  ///< of this draw in FrameGeometry::projected, or kNotProjected
-  std::size_t number = 0;        ///< among the draws of its shading
-  bool is_projected = false;     ///< all its vertices are there, else only those of some clusters
+  std::size_t first_vertex = 0;  ///< in FrameGeometry::projected, or kNotProjected
+  std::size_t number = 0;        ///< among the draws with its shading
+  bool is_projected = false;     ///< all its vertices are there, not only some clusters'
 
-  /// Makes this a draw of the triangles of mesh `of`, `count` times. The mesh must outlive the
-  /// frame.
+  /// Draws the triangles of mesh `of`, `count` times. The mesh must outlive the frame.
   void set_triangles(const MeshView& of, std::size_t count = 1) {
     if (of.is_packed_list())
       indices = of.indices.packed();
@@ -97,7 +95,7 @@ struct Draw : Primitives {
     vertex_count = of.positions.size();
     primitive_count = of.size();
   }
-  /// A primitive of the draw as one of a copy.
+  /// A primitive within its copy.
   struct OfCopy {
     std::uint64_t copy = 0, primitive = 0;
   };
@@ -112,11 +110,9 @@ struct Draw : Primitives {
     if (!is_copied()) return {0, primitive};
     return {primitive / copies.primitives, primitive % copies.primitives};
   }
-  /// The number of a copy's first vertex.
   [[nodiscard]] RASTRUM_HD std::uint32_t first_vertex_of(std::uint64_t copy) const {
     return static_cast<std::uint32_t>(copy) * copies.vertices;
   }
-  /// How many primitives one copy has.
   [[nodiscard]] std::uint64_t own_primitives() const {
     return primitive_count / copies.count;
   }
@@ -131,7 +127,7 @@ struct Draw : Primitives {
     }
     return own_vertex(primitive, corner);
   }
-  /// The same for a primitive of one copy: a number among the copy's own vertices.
+  /// `primitive` and the result are within one copy.
   [[nodiscard]] RASTRUM_HD std::uint32_t own_vertex(std::uint64_t primitive, int corner) const {
 #if !defined(__CUDA_ARCH__)
     if (mesh != nullptr)
@@ -143,7 +139,7 @@ struct Draw : Primitives {
                           static_cast<std::size_t>(corner);
     return indices.empty() ? static_cast<std::uint32_t>(i) : indices[i];
   }
-  /// The three vertices of a triangle. Decides once, not per corner, where they are read from.
+  /// Decides once, not per corner, where vertices are read.
   RASTRUM_HD void vertices(std::uint64_t triangle, std::uint32_t (&out)[3]) const {
     const bool is_list =
         mesh == nullptr && points == nullptr && lines == nullptr && !indices.empty();
@@ -154,7 +150,7 @@ struct Draw : Primitives {
     for (int c = 0; c < 3; ++c)
       out[c] = first + (packed != nullptr ? packed[c] : own_vertex(of.primitive, c));
   }
-  /// The indices of its corners, whichever view holds them.
+  /// The indices of the corners, from whichever view has them.
   [[nodiscard]] IndexView index_view() const {
     if (mesh != nullptr) return mesh->indices;
     if (points != nullptr) return points->indices;
@@ -168,7 +164,7 @@ struct Draw : Primitives {
 #endif
     return flags | material_flags[face_materials[face]];
   }
-  /// The size of a point, px.
+  /// In px.
   [[nodiscard]] RASTRUM_HD float size_of(std::uint64_t primitive) const {
 #if !defined(__CUDA_ARCH__)
     if (points != nullptr && !points->sizes.empty()) return points->sizes[vertex(primitive, 0)];
@@ -178,13 +174,12 @@ struct Draw : Primitives {
   [[nodiscard]] RASTRUM_HD bool is_round() const {
     return points != nullptr && points->round;
   }
-  /// All flags that some primitive may have.
   [[nodiscard]] std::uint32_t any_flags() const {
     std::uint32_t any = flags;
     for (const std::uint32_t f : material_flags) any |= f;
     return any;
   }
-  /// `cull` restated for counter-clockwise fronts, whatever `winding` is.
+  /// `cull` for counter-clockwise fronts, whatever `winding` is.
   [[nodiscard]] RASTRUM_HD Cull effective_cull() const {
     return effective_cull(cull, winding);
   }
@@ -193,11 +188,11 @@ struct Draw : Primitives {
     const bool swap = winding == Winding::clockwise;
     return (cull == Cull::back) != swap ? Cull::back : Cull::front;
   }
-  /// Whether the setup kernel may make its pieces; otherwise assemble_primitive does.
+  /// Whether the setup kernel makes its pieces; else assemble_primitive does.
   [[nodiscard]] bool has_kernel() const {
     return may_have_kernel(Topology::triangles);
   }
-  /// Whether the kernel of points may make fragments of them.
+  /// Whether the points kernel may make its fragments.
   [[nodiscard]] bool has_points_kernel() const {
     return may_have_kernel(Topology::points);
   }
@@ -214,8 +209,8 @@ struct Draw : Primitives {
                                                       std::uint64_t id) {
   std::size_t low = 0;
   std::size_t high = draws.size();
-  // Instances of one mesh have equally many primitives: then the first guess is the draw or the one
-  // beside it.
+  // Instances of one mesh have equally many primitives. Then the first guess is the draw or its
+  // neighbour.
   if (high > 16) {
     const std::uint64_t first = draws[0].first_id;
     const std::uint64_t ids = draws[high - 1].first_id + draws[high - 1].primitive_count - first;

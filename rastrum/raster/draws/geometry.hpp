@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The projected scene: what setup, and again shading, ask about the vertices of a draw.
 #pragma once
 
 #include <cstddef>
@@ -19,9 +18,9 @@ struct FrameGeometry {
   std::span<const Draw> draws;
   const ProjectedVertex* projected = nullptr;  ///< null: vertices are projected where they are read
   Isa isa = Isa::scalar;
-  std::uint64_t number = 0;  ///< tells a process's frames apart, for who keeps things of one; 0: no
+  std::uint64_t number = 0;  ///< distinct for a process's frames, for caches; 0: none
 
-  /// The projected vertices of a draw; null: they are projected where they are read.
+  /// Null: vertices are projected where they are read.
   [[nodiscard]] const ProjectedVertex* projected_of(const Draw& draw) const {
     return projected == nullptr || draw.first_vertex == kNotProjected
                ? nullptr
@@ -34,18 +33,17 @@ struct FrameGeometry {
     return v;
   }
 
-  /// As VertexStage's.
   [[nodiscard]] Vec4d clip_position(const Draw& draw, std::uint32_t index) const {
     return draw.source.clip_position(index);
   }
 
-  /// Draw::flags_of, with what clip planes make of the primitive: kCut or kCutAway.
+  /// Draw::flags_of, and kCut or kCutAway by the draw's clip planes.
   [[nodiscard]] std::uint32_t flags_of(const Draw& draw, std::uint64_t primitive) const noexcept {
     return draw.cut == nullptr ? draw.flags_of(primitive)
                                : draw.flags_of(primitive) | cut_flags(draw, primitive);
   }
 
-  /// The draw that holds primitive `id`. O(log draws).
+  /// O(log draws).
   [[nodiscard]] const Draw& draw_of(std::uint64_t id) const { return draw_with(draws, id); }
 
  private:

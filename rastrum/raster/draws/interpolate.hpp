@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Perspective-correct interpolation: f = Σ bᵢ fᵢ / Σ bᵢ with weights bᵢ that are linear on the
-// screen. Computed in float64 from snapped positions, or, for a triangle that was clipped, from the
-// homogeneous positions of the original (Olano and Greer, "Triangle scan conversion using 2D
-// homogeneous coordinates", 1997), so that no attribute is ever clipped. The SIMD shaders have a
-// float32 form for triangles where that is as good. Templates on the geometry that knows the
-// vertices, as in assemble.hpp. Along a line the weights change with the major axis alone, as its
-// depth does; a point has one weight.
+// screen. Computed in float64 from snapped positions or, for a clipped triangle, from the
+// original's homogeneous positions (Olano and Greer, "Triangle scan conversion using 2D homogeneous
+// coordinates", 1997), so that no attribute is ever clipped. SIMD shaders have a float32 form for
+// triangles where that is as good. Templates on the geometry, as in assemble.hpp. A line's weights
+// change with the major axis alone, as its depth does; a point has one weight.
 #pragma once
 
 #include <bit>
@@ -63,7 +62,6 @@ RASTRUM_HD WeightPlanes line_weight_planes(const Geometry& frame, const Draw& dr
   return w;
 }
 
-/// The weight planes of the triangle with these vertices.
 template <class Geometry>
 RASTRUM_HD WeightPlanes weight_planes(const Geometry& frame, const Draw& draw,
                                       const std::uint32_t (&index)[3]) {
@@ -95,7 +93,7 @@ RASTRUM_HD WeightPlanes weight_planes(const Geometry& frame, const Draw& draw,
   const double hh = frame.viewport.half_height;
   for (int i = 0; i < 3; ++i) {
     const Vec4d &a = c[(i + 1) % 3], &b = c[(i + 2) % 3];
-    // The edge opposite of vertex i as a function of NDC (X, Y, 1); X = x / hw − 1, Y = 1 − y / hh.
+    // The edge opposite vertex i as a function of NDC (X, Y, 1); X = x / hw − 1, Y = 1 − y / hh.
     const double ex = a.y * b.w - a.w * b.y;
     const double ey = a.w * b.x - a.x * b.w;
     const double ew = a.x * b.y - a.y * b.x;
@@ -114,10 +112,9 @@ RASTRUM_HD WeightPlanes weight_planes(const Geometry& frame, const Draw& draw,
   return weight_planes(frame, draw, vertex);
 }
 
-/// Weights at a point of pixel (x, y), `from_centre` px from its centre, without their changes.
-/// Snapping may put a sample a little outside of a clipped triangle's exact shape, where thin ones
-/// would extrapolate wildly; so weights are cut to [0, 1]. Returns the sum of the weights before
-/// they were normalized.
+/// Weights at a point of pixel (x, y), `from_centre` px from its centre. Snapping may put a sample
+/// a little outside of a clipped triangle's exact shape, where thin ones would extrapolate wildly,
+/// so weights are clamped to [0, 1]. Returns their sum before normalization.
 RASTRUM_HD inline double shares_at(const WeightPlanes& w, int x, int y, Vec2 from_centre,
                                    double (&b)[3]) {
   const double dx = x + 0.5 + static_cast<double>(from_centre.x) - w.x0;
@@ -137,7 +134,6 @@ RASTRUM_HD inline double shares_at(const WeightPlanes& w, int x, int y, Vec2 fro
   return sum;
 }
 
-/// The same with their changes.
 RASTRUM_HD inline Weights weights_at(const WeightPlanes& w, int x, int y,
                                      Vec2 from_centre = {0, 0}) {
   Weights result;
@@ -154,12 +150,12 @@ RASTRUM_HD inline Weights weights_at(const WeightPlanes& w, int x, int y,
   return result;
 }
 
-/// A pixel, and a place in it, px from its centre.
+/// A pixel, and an offset from its centre in px.
 struct PixelPoint {
   int x, y;
   Vec2 from_centre;
 };
-/// The point of element i of a block that begins at pixel (x0, y0); `points` as in VisibleBlock.
+/// Element i of a block that begins at pixel (x0, y0); `points` as in VisibleBlock.
 inline PixelPoint pixel_point(int x0, int y0, int i, const ShadingPoints* points) {
   PixelPoint at{x0 + i % kBlockSize, y0 + i / kBlockSize, {0, 0}};
   if (points == nullptr) return at;
@@ -170,20 +166,19 @@ inline PixelPoint pixel_point(int x0, int y0, int i, const ShadingPoints* points
   return at;
 }
 
-/// A fragment, and the planes that its weights are of.
 struct LocatedFragment : Fragment {
   const WeightPlanes* planes = nullptr;
 };
 
-/// Finds primitives and their weights for fragment after fragment; neighbours mostly share one,
-/// whose planes are then kept.
+/// Finds the primitives and weights of fragments. Neighbours mostly share a primitive, whose planes
+/// are kept.
 class FragmentLocator {
  public:
   explicit FragmentLocator(const FrameGeometry& frame) : frame_(frame) {}
 
   /// The fragment of primitive `id` at element i of a block that begins at pixel (x0, y0); `points`
-  /// as in VisibleBlock. Valid until the next call; its depth is the caller's to set. Without
-  /// `changes` it is not set how the weights change across pixels.
+  /// as in VisibleBlock. Valid until the next call. Its depth is not set, nor, without `changes`,
+  /// how the weights change across pixels.
   LocatedFragment& locate(std::uint64_t id, int x0, int y0, int i, const ShadingPoints* points,
                           bool changes = true) {
     const auto [x, y, from_centre] = pixel_point(x0, y0, i, points);
@@ -257,11 +252,11 @@ class FragmentLocator {
   const FrameGeometry& frame_;
   LocatedFragment fragment_;
   WeightPlanes planes_;
-  double square_px_ = 0;  ///< of a point, else 0
+  double square_px_ = 0;  ///< a point's, else 0
 };
 
-/// A BlockShader from a function Vec4(const FrameGeometry&, const Fragment&) that returns the
-/// premultiplied colour of one fragment.
+/// A BlockShader from a function Vec4(const FrameGeometry&, const Fragment&) that returns a
+/// fragment's premultiplied colour.
 template <class F>
 class FragmentShader final : public BlockShader {
  public:

@@ -21,7 +21,7 @@ void check_draw(const Draw& draw, const DrawNames& names, std::size_t number) {
   };
   require(draw.topology >= Topology::points, "its topology is 0, which is no value of its enum");
   const auto check = [&](auto value, auto last, const char* what) {
-    if (value > last)  // a million draws make no million names
+    if (value > last)  // for a million draws, names cost time
       check_enum(value, last, names.of(number).append(what));
   };
   check(draw.topology, Topology::triangles, ": its topology");
@@ -39,13 +39,13 @@ void check_draw(const Draw& draw, const DrawNames& names, std::size_t number) {
   const std::uint64_t most = draw.mesh != nullptr
                                  ? draw.mesh->triangle_count()
                                  : corners / static_cast<std::size_t>(draw.topology);
-  // Points and lines are counted from their own arrays, so their number is right.
+  // Points and lines are counted by their own arrays, so the number is right.
   if (draw.points == nullptr && draw.lines == nullptr && draw.own_primitives() > most)
     refuse(names, number,
            "primitive_count is " + std::to_string(draw.own_primitives()) + ", but its " +
                std::to_string(corners) + (indexed ? " indices" : " vertices") + " make up " +
                std::to_string(most));
-  // Written so that a NaN fails.
+  // A NaN fails.
   require(draw.line_width > 0 && draw.line_width <= kMaxLineWidth,
           "the line width must be > 0 and at most 4096 px");
   require(draw.point_size > 0 && draw.point_size <= kMaxPointSize,
@@ -72,7 +72,7 @@ Totals number_draws(std::span<Draw> draws, std::uint64_t first_id, const DrawNam
     check_draw(draw, names, i);
     draw.first_id = first_id + totals.primitives;
     draw.first_vertex = totals.vertices;
-    // Mostly all draws have one shading, so few have to be looked up.
+    // Mostly all draws share a shading, so few look-ups are needed.
     if (i == 0 || draw.shading != draws[i - 1].shading) number = &of_shading[draw.shading];
     draw.number = (*number)++;
     totals.primitives += draw.primitive_count;

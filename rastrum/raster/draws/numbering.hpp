@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The draws of a frame are checked and numbered before anything is drawn.
+// Checks and numbers the draws of a frame before anything is drawn.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +15,8 @@ namespace rastrum::raster {
 
 /// How messages name draws.
 struct DrawNames {
-  std::string_view noun = "draw";      ///< a scene's are instances
-  const InstanceRuns* runs = nullptr;  ///< of instances, whose number is the first one's
+  std::string_view noun = "draw";      ///< a scene's draws are instances
+  const InstanceRuns* runs = nullptr;  ///< of instances, numbered by their first
 
   [[nodiscard]] std::string of(std::size_t draw) const {
     const std::size_t number = runs == nullptr ? draw : runs->number(draw);
@@ -25,10 +25,9 @@ struct DrawNames {
 };
 
 /// Numbers the primitives (from `first_id`) and vertices of all draws, and the draws of each
-/// shader; returns the totals. Throws Error{invalid_argument} that names the draw (by its name) if
-/// there are more primitives than ids, without a source, and for a number of primitives, topology,
-/// line width, point size, depth bias or face material out of range. O(draws), and O(primitives) of
-/// those with flags by material.
+/// shader. Throws Error{invalid_argument} naming the draw: more primitives than ids, no source, or
+/// a number of primitives, topology, line width, point size, depth bias or face material out of
+/// range. O(draws), and O(primitives) with flags by material.
 struct Totals {
   std::uint64_t primitives = 0;
   std::size_t vertices = 0;
@@ -36,7 +35,7 @@ struct Totals {
 [[nodiscard]] Totals number_draws(std::span<Draw> draws, std::uint64_t first_id = 0,
                                   const DrawNames& names = {});
 
-/// Throws Error{invalid_argument} naming the first index that is out of range, if there is one.
+/// Throws Error{invalid_argument} naming the first index that is out of range.
 void check_indices(std::span<const Draw> draws, const DrawNames& names);
 
 }  // namespace rastrum::raster

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A program's stages as the pipeline's hooks: finds fragments and their weights for them.
+// A program's stages as hooks of the pipeline: finds fragments and their weights.
 #include <rastrum/program.hpp>
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace rastrum::raster {
 namespace {
 
-/// The fragments of primitive `id` in `mask`, and the elements of the block that they are of.
+/// The fragments of primitive `id` in `mask`, and their elements of the block.
 class Batch {
  public:
   Batch(const FrameGeometry& frame, std::uint64_t id, std::uint64_t mask, int x0, int y0,
@@ -38,7 +38,7 @@ class Batch {
   std::size_t count_ = 0;
   int elements_[64];
   union {
-    Fragment fragments_[64];  // no more are made than there are
+    Fragment fragments_[64];  // only fragments that exist are constructed
   };
 };
 

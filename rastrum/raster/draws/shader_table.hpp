@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The table of the built-in shaders: one row each, and every list of shaders is made from it. A new
-// one that makes a colour of a normal and a base colour is a value of Shader, a row here, and a
-// line of light() (shade/lit_fixed.inl).
+// The table of built-in shaders, one row each, from which every list of shaders is made. A new one
+// of a normal and a base colour is a value of Shader, a row here, and a line of light()
+// (shade/lit_fixed.inl).
 #pragma once
 
 #include <array>
@@ -14,10 +14,10 @@ namespace rastrum::raster {
 
 struct ShaderRow {
   std::string_view name;
-  /// The parts of a surface that light() reads. Neither: it does not know the shader.
+  /// The parts of a surface that light() reads. Neither: light() does not have the shader.
   bool normal = false, base = false;
-  bool lights = false;    ///< FrameOptions::lights fall on what it draws
-  bool in_place = false;  ///< arrays may be memory of a device
+  bool lights = false;    ///< FrameOptions::lights apply
+  bool in_place = false;  ///< arrays may be device memory
 };
 
 /// In the order of the enum.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The shading and the fragment test of a draw or a frame: values, which the host calls a block at a
-// time and a device reads. A caller's own function (hooks.hpp) is one alternative of each.
+// The shading and the fragment test of a draw or a frame: values, which the host calls by blocks
+// and a device reads. Each may be a caller's own function (hooks.hpp).
 #pragma once
 
 #include <cstddef>
@@ -33,7 +33,7 @@ struct LitScene;
 struct MaterialScene;
 struct VisibleBlock;
 
-/// The plain shaders: all but `depth`, which is another's, and `material` (lit.hpp).
+/// The plain shaders (lit.hpp): all but `depth` and `material`.
 struct LitShading {
   Shader model = Shader::flat;
   const LitScene* scene = nullptr;
@@ -43,28 +43,27 @@ struct LitShading {
 /// The scene's materials (material.hpp).
 struct MaterialShading {
   const MaterialScene* scene = nullptr;
-  bool linear = false;  ///< leaves the transfer function to FrameRequest::linear_light
+  bool linear = false;  ///< FrameRequest::linear_light applies the transfer function
   bool operator==(const MaterialShading&) const = default;
 };
 
-/// The source of colours, and the alpha that they are multiplied by (alpha.hpp). All that it points
-/// to must outlive the frame. The built-in ones take their draws for the instances of their scene,
-/// in order, whatever stands between them.
+/// The source of colours, and the alpha that multiplies them (alpha.hpp). All that it points to
+/// must outlive the frame. The built-in shaders map their draws, in order, to the instances of
+/// their scene, whatever other draws stand between.
 class Shading {
  public:
-  Shading() = default;  ///< none: no colour can be asked for
+  Shading() = default;  ///< no colour can be asked for
   Shading(const LitShading& lit) : colors_(lit) {}
   Shading(const MaterialShading& material) : colors_(material) {}
-  /// The caller's own.
   Shading(const BlockShader& own) : colors_(&own) {}
   Shading(const ProgramStages& program);
-  /// The same; null: none.
+  /// The caller's own; null: none.
   Shading(const BlockShader* own) {
     if (own != nullptr) colors_ = own;
   }
-  /// The same colours, multiplied by alpha. Fragments without alpha are not shaded, and there are
-  /// no further outputs. `blending`: the scene whose translucent materials have the alpha, and
-  /// whose textures must hold those of such materials; null: there are none.
+  /// The same colours times alpha. Fragments without alpha are not shaded, and there are no further
+  /// outputs. `blending`: the scene whose translucent materials have the alpha, with their
+  /// textures; null: there are none.
   [[nodiscard]] Shading with_alpha(const MaterialScene* blending, float opacity) const {
     Shading s = *this;
     s.blending_ = blending;
@@ -75,7 +74,7 @@ class Shading {
   [[nodiscard]] explicit operator bool() const { return colors_.index() != 0; }
   bool operator==(const Shading&) const = default;
 
-  /// Each is null where the colours are another's.
+  /// Null unless this kind makes the colours.
   [[nodiscard]] const LitShading* lit() const { return std::get_if<LitShading>(&colors_); }
   [[nodiscard]] const MaterialShading* material() const {
     return std::get_if<MaterialShading>(&colors_);
@@ -104,21 +103,21 @@ class Shading {
   float opacity_ = 1;
 };
 
-/// AlphaMode::mask (alpha.hpp): fragments below a material's cutoff are holes. The scene's textures
-/// must hold those of the masks.
+/// AlphaMode::mask (alpha.hpp): fragments below a material's cutoff are holes. The scene must have
+/// the textures of the masks.
 struct MaskTest {
   const MaterialScene* scene = nullptr;
   bool operator==(const MaskTest&) const = default;
 };
 
-/// Decides, before the maximum, which fragments of pieces with kTested are there. All that it
-/// points to must outlive the frame.
+/// Decides before the maximum which fragments of pieces with kTested exist. All that it points to
+/// must outlive the frame.
 class Testing {
  public:
-  Testing() = default;  ///< all are
+  Testing() = default;  ///< all exist
   Testing(const MaskTest& masks) : test_(masks) {}
   Testing(const ProgramStages& program);
-  /// The caller's own; null: all are.
+  /// The caller's own; null: all exist.
   Testing(const FragmentTest* own) {
     if (own != nullptr) test_ = own;
   }
@@ -126,7 +125,7 @@ class Testing {
   [[nodiscard]] explicit operator bool() const { return test_.index() != 0; }
   bool operator==(const Testing&) const = default;
 
-  /// Each is null where another tests.
+  /// Null unless this kind tests.
   [[nodiscard]] const MaskTest* masks() const { return std::get_if<MaskTest>(&test_); }
   [[nodiscard]] const FragmentTest* own() const {
     const auto* const own = std::get_if<const FragmentTest*>(&test_);

@@ -10,10 +10,10 @@ namespace rastrum::raster {
 
 namespace {
 
-/// Positions that are read at once where they are not packed, or not in order.
+/// Positions read at once where they are not packed or not in order.
 constexpr std::size_t kPositionsAtOnce = 256;
 
-/// Calls read(first, n, positions) for the n positions that are projected next, float32 or float64.
+/// Calls read(first, n, positions) for the next n positions, float32 or float64.
 template <class Read>
 void project_read(const MatrixVertices& m, std::size_t count, Viewport viewport, Isa isa,
                   ProjectedVertex* out, const Read& read) {
@@ -67,7 +67,7 @@ void project_named(const MatrixVertices& m, std::span<const std::uint32_t> indic
   });
 }
 
-/// Copy by copy, as far as the same one is meant in a row.
+/// Takes runs of indices into the same copy together.
 void project_named(const CopiedVertices& all, std::span<const std::uint32_t> indices,
                    Viewport viewport, Isa isa, ProjectedVertex* out) {
   const std::size_t size = all.positions.size();
@@ -76,7 +76,7 @@ void project_named(const CopiedVertices& all, std::span<const std::uint32_t> ind
     const std::size_t first = indices[i] / size * size;
     std::size_t n = 0;
     for (; n < kPositionsAtOnce && i + n < indices.size(); ++n) {
-      const std::size_t vertex = indices[i + n] - first;  // wraps where it is of one before
+      const std::size_t vertex = indices[i + n] - first;  // wraps for an earlier copy
       if (vertex >= size) break;
       own[n] = static_cast<std::uint32_t>(vertex);
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The vertex stage of a draw: a value that host and device read, positions under a matrix or a
-// function of the caller's own.
+// The vertex stage of a draw, a value for host and device: positions under a matrix, or a caller's
+// function.
 #pragma once
 
 #include <cmath>
@@ -22,15 +22,14 @@ namespace rastrum::raster {
 class VertexSource {
  public:
   virtual ~VertexSource() = default;
-  /// Projects vertices [begin, end) into out[0 … end − begin).
   virtual void project(std::size_t begin, std::size_t end, Viewport viewport, Isa isa,
                        ProjectedVertex* out) const noexcept = 0;
-  /// Homogeneous position for the clipper; NaN where the vertex is not finite.
+  /// Homogeneous, for the clipper; NaN if the vertex is not finite.
   [[nodiscard]] virtual Vec4d clip_position(std::size_t vertex) const noexcept = 0;
 };
 
-/// A position for the clipper: in float32, or for a finite vertex that overflows there in float64;
-/// a NaN or infinity stays one.
+/// A position for the clipper, in float32, or in float64 for a finite vertex that overflows there.
+/// A NaN or infinity stays one.
 [[nodiscard]] RASTRUM_HD inline Vec4d clip_position_of(Vec3 p, const Mat4& matrix,
                                                        const Mat4d& matrix64) {
   const Vec4 clip = transform_point(matrix, p);
@@ -44,7 +43,7 @@ class VertexSource {
   return {row(0), row(1), row(2), row(3)};
 }
 
-/// The same of a position in float64: transformed as it is and rounded once.
+/// From a float64 position: transformed in float64 and rounded once.
 [[nodiscard]] inline Vec4d clip_position_of(Vec3d p, const Mat4d& matrix64) {
   const Vec4d exact = transform_point(matrix64, p);
   const Vec4d clip = {in_float32(exact.x), in_float32(exact.y), in_float32(exact.z),
@@ -55,7 +54,7 @@ class VertexSource {
   return exact;
 }
 
-/// Positions in object space, which must outlive the frame, and their matrix to clip space.
+/// Positions in object space, which must outlive the frame, and the matrix to clip space.
 struct MatrixVertices {
   ArrayView<Vec3> positions;
   Mat4d object_to_clip;
@@ -65,12 +64,12 @@ struct MatrixVertices {
       : positions(p), object_to_clip(to_clip), object_to_clip32(to_clip) {}
 };
 
-/// The same positions under one matrix after the other: vertex v of copy k has the number
-/// k · positions.size() + v.
+/// Positions under one matrix after the other: vertex v of copy k is number k · positions.size() +
+/// v.
 struct CopiedVertices {
   ArrayView<Vec3> positions;
   const Mat4d* object_to_world;  ///< of copy 0
-  std::size_t stride_bytes;      ///< from copy to copy
+  std::size_t stride_bytes;      ///< between copies
   Mat4d world_to_clip;
 
   [[nodiscard]] MatrixVertices copy(std::size_t k) const {
@@ -81,13 +80,12 @@ struct CopiedVertices {
   }
 };
 
-/// Where the vertices of a draw come from.
 class VertexStage {
  public:
-  VertexStage() = default;  ///< from nowhere
+  VertexStage() = default;  ///< none
   VertexStage(const MatrixVertices& vertices) : stage_(vertices) {}
   VertexStage(const CopiedVertices& vertices) : stage_(vertices) {}
-  /// The caller's, which must outlive the frame; null: from nowhere.
+  /// The caller's, which must outlive the frame; null: none.
   VertexStage(const VertexSource* own) {
     if (own != nullptr) stage_ = own;
   }
@@ -95,13 +93,12 @@ class VertexStage {
   [[nodiscard]] explicit operator bool() const { return stage_.index() != 0; }
   /// Whether vertices are positions under matrices.
   [[nodiscard]] bool has_positions() const { return matrix() != nullptr || copies() != nullptr; }
-  /// The positions and the matrix, which a device can read. Null: only the host can make the
-  /// vertices.
+  /// A device can read them. Null: only the host can make the vertices.
   [[nodiscard]] const MatrixVertices* matrix() const {
     return std::get_if<MatrixVertices>(&stage_);
   }
 
-  /// The positions of a copy and their matrix, where has_positions().
+  /// Requires has_positions().
   [[nodiscard]] MatrixVertices matrix_of(std::uint64_t copy) const {
     const MatrixVertices* const m = matrix();
     return m != nullptr ? *m : copies()->copy(copy);
@@ -110,10 +107,9 @@ class VertexStage {
   /// Projects vertices [begin, end) into out[0 … end − begin). Thread-safe, as are the others.
   void project(std::size_t begin, std::size_t end, Viewport viewport, Isa isa,
                ProjectedVertex* out) const noexcept;
-  /// Projects the vertices that `indices` name, into out[0 … size).
+  /// Projects vertices `indices` into out[0 … size).
   void project_indexed(std::span<const std::uint32_t> indices, Viewport viewport, Isa isa,
                        ProjectedVertex* out) const noexcept;
-  /// Homogeneous position for the clipper; NaN where the vertex is not finite.
   [[nodiscard]] Vec4d clip_position(std::size_t vertex) const noexcept {
     if (const MatrixVertices* const m = matrix()) return clip_position(*m, vertex);
     if (const CopiedVertices* const c = copies()) {

@@ -8,19 +8,19 @@
 
 namespace rastrum::raster {
 
-/// The positions of a mesh, of points or of lines, and the primitives that they make up. Null: the
-/// geometry has no vertices.
+/// The positions of a mesh, points or lines, and what they make up. Null: the geometry has no
+/// vertices.
 struct VertexList {
   const ArrayView<Vec3>* positions = nullptr;
   Topology topology = Topology::triangles;
 };
 [[nodiscard]] VertexList vertices_of(GeometryRef geometry);
 
-/// Makes `draw` one of a mesh, of points or of lines, which must outlive the frame. Returns false,
-/// and does nothing, for other geometry.
+/// Makes `draw` one of a mesh, points or lines, which must outlive the frame. Returns false for
+/// other geometry, and leaves `draw` as it is.
 bool set_vertices(Draw& draw, GeometryRef geometry, const Mat4d& object_to_clip);
 
-/// Makes `draw` a draw of `count` consecutive instances of `mesh`; all must outlive the frame.
+/// Makes `draw` one of `count` consecutive instances of `mesh`. All must outlive the frame.
 void set_copies(Draw& draw, const MeshView& mesh, const InstanceView* instances, std::size_t count,
                 const Mat4d& world_to_clip);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The second half of the fast path: a thread owns a bin, covers its pieces, keeps the keys in its
-// cache and shades them there. The type of bin decides how a pixel's fragments are resolved: by the
+// The second half of the fast path: a thread owns a bin, covers its pieces, keeps their keys in
+// cache and shades them. The type of bin decides how fragments of a pixel are resolved: by the
 // maximum (BinKeys) or in exact layers (transparency/layers.hpp).
 #pragma once
 
@@ -19,7 +19,7 @@
 
 namespace rastrum::raster {
 
-/// A bin that a thread draws, as BinKeys has it. kColors: it fills the surface's colours.
+/// A bin that a thread draws, such as BinKeys. kColors: it fills the surface's colours.
 template <class B>
 concept Bin = std::convertible_to<decltype(B::kColors), bool> &&
     requires(B& bin, const BinContext& context, const SurfaceView& surface, Rect rect,
@@ -33,7 +33,7 @@ concept Bin = std::convertible_to<decltype(B::kColors), bool> &&
   bin.finish();
   bin.collect(counters);
 };
-/// It has rows for small triangles.
+/// It has rows of keys for small triangles.
 template <class B>
 concept BinWithRows = Bin<B> && requires(B& bin) {
   { bin.rows() } -> std::same_as<RowKeys*>;
@@ -45,7 +45,7 @@ concept BinWithWindows = Bin<B> && requires(B& bin, const Piece* pieces, std::sp
   { bin.takes_windows() } -> std::same_as<bool>;
   bin.windows(pieces, windows);
 };
-/// The keys of its surface hide what is tested.
+/// The keys of its surface hide fragments that would be tested.
 template <class B>
 concept BinWithSurface = Bin<B> && requires(B& bin) {
   { bin.surface() } -> std::same_as<const SurfaceView&>;
@@ -66,7 +66,7 @@ class Bins {
           return Worker{memory, args...};
         }) {}
 
-  /// Draws what `groups` have in `bin`, or in the part `rect` of it, at most `side_px` across.
+  /// Draws what `groups` have in `bin`, or in its part `rect`, at most `side_px` across.
   /// Thread-safe for distinct rectangles.
   void draw(FrameRun& frame, const BinTable& lists, std::span<const Group> groups, std::size_t bin,
             Rect rect, int side_px) {
@@ -88,7 +88,6 @@ class Bins {
     if (local) frame.shade(surface, rect);
   }
 
-  /// Adds what the bins counted since the last call.
   void collect(Counters& counters) {
     workers_.for_each([&](Worker& worker) { worker.bin.collect(counters); });
   }
@@ -102,11 +101,11 @@ class Bins {
     B bin;
   };
 
-  /// A BinSink that collects covered blocks, counts and tests them, and hands them to the bin.
+  /// Collects covered blocks, counts and tests them, and hands them to the bin.
   class Sink {
    public:
     Sink(FrameRun& frame, Worker& worker) : frame_(frame), worker_(worker) {
-      // Fragment tests and the overdraw count work on blocks, so they get no windows.
+      // Tests and the overdraw count work on blocks, so they get no windows.
       if constexpr (BinWithWindows<B>)
         if (!frame.plan.tests && frame.plan.hides && worker.bin.takes_windows())
           windows_ = cover_windows(frame.request.isa);
@@ -128,7 +127,7 @@ class Bins {
     }
     void small(Rect bin, Rect rect,
                std::span<const BinTriangle> triangles) requires BinWithRows<B> {
-      // Goes in batches, so that what one of them hides is left out of the next.
+      // In batches, so that one can hide triangles of the next.
       for (; !triangles.empty();
            triangles = triangles.subspan(std::min(triangles.size(), kMostRowPieces))) {
         frame_.kernel.raise_small(triangles.data(), std::min(triangles.size(), kMostRowPieces),
@@ -164,7 +163,7 @@ class Bins {
     }
 
    private:
-    /// Few, so that what they leave hides fragments of the next batch before those are tested.
+    /// Few, so that what they leave hides fragments of the next batch before its tests.
     static constexpr std::size_t kTestedAtOnce = 32;
 
     FrameRun& frame_;

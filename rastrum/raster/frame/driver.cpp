@@ -17,27 +17,25 @@
 namespace rastrum::raster {
 namespace {
 
-/// Below this many bytes for triangles or fragments at once the pieces of the work would be smaller
-/// than what a task costs.
+/// With fewer bytes for triangles or fragments at once, the pieces of work would be smaller than
+/// the cost of a task.
 constexpr std::uint64_t kLeastShare = std::uint64_t{1} << 19;
 
 /// Bytes that each thread needs beside the shares of the plan: a tile's keys, colours and depths, a
-/// bin's rows, the fragments of a setup kernel with their runs, and a bin's keys of several
-/// samples.
+/// bin's rows, a setup kernel's fragments with their runs, and a bin's keys of several samples.
 std::uint64_t thread_bytes(int samples) {
   constexpr std::uint64_t kKeysOfASample = sizeof(std::uint64_t) * kBinSize * kBinSize;
   return (std::uint64_t{3} << 16) +
          (samples > 1 ? static_cast<std::uint64_t>(samples) * kKeysOfASample : 0);
 }
 
-/// Pieces of a batch are counted in 32 bits, and the clipper makes fewer than 16 of a triangle.
+/// 32 bits count the pieces of a batch, and the clipper makes fewer than 16 of a triangle.
 constexpr std::uint64_t kLargestBatch = std::uint64_t{1} << 28;
 
-/// A draw by clusters projects only vertices that are seen, but into memory for all of them. Draws
-/// of more vertices than this (a GiB) keep none: shading projects those that it needs again.
+/// A draw by clusters projects only vertices that are seen, but into memory for all. Draws with
+/// more vertices (a GiB) keep none: shading projects again those that it needs.
 constexpr std::size_t kMostSparse = std::size_t{1} << 26;
 
-/// Source of FrameGeometry::number, shared by all drivers.
 std::atomic<std::uint64_t> frames_of_all = 0;
 
 [[noreturn]] void refuse_limit(std::uint64_t limit, const std::string& why) {
@@ -47,7 +45,7 @@ std::atomic<std::uint64_t> frames_of_all = 0;
                                        .append(why));
 }
 
-/// Gives draws their places among the projected vertices, and returns how many there are.
+/// Gives draws their places among the projected vertices. Returns their number.
 std::uint64_t place_projected(std::span<Draw> draws) {
   std::uint64_t vertices = 0;
   for (Draw& draw : draws) {
@@ -85,11 +83,10 @@ void end_frame(const Totals& totals, FrameStats& stats) {
   stats.triangles.drawn = totals.primitives - stats.triangles.dropped - stats.triangles.culled;
 }
 
-/// How the work is split: bands of rows, and in each band batches of triangles. Without a limit
-/// there is one of both.
+/// Bands of rows, and batches of triangles in each. Without a limit there is one of both.
 struct FrameDriver::Split {
-  bool project_first = true;  ///< else vertices are projected where triangles need them
-  bool surface = true;        ///< keys for a band, else tiles keep their own
+  bool project_first = true;  ///< else where triangles need them
+  bool surface = true;        ///< a band has keys; else tiles keep their own
   int band_rows = 0;
   std::uint64_t batch = 0;  ///< triangles
   std::uint64_t fragment_bytes = 0;
@@ -123,7 +120,7 @@ FrameDriver::Split FrameDriver::split_work(const FrameRequest& request,
   const std::uint64_t row_of_pixels =
       static_cast<std::uint64_t>(block_columns({0, 0, request.width, 1})) * kBlockSize *
       static_cast<std::uint64_t>(needs_.surface_bytes);
-  // The least band is a row of bins, so that a band never cuts one.
+  // A band is whole rows of bins.
   const std::uint64_t least_band = row_of_pixels * kBinSize;
   const auto threads =
       static_cast<std::uint64_t>(threads_ == nullptr ? 1 : threads_->concurrency());
@@ -133,8 +130,8 @@ FrameDriver::Split FrameDriver::split_work(const FrameRequest& request,
     refuse_limit(memory_limit_,
                  "is less than the " + std::to_string(least) + " that this frame needs at least");
 
-  // A quarter each for projected vertices, triangles, the surface and fragments. A share that one
-  // does not need is not given to another, so that the plan of a frame does not jump.
+  // A quarter each for projected vertices, triangles, the surface and fragments. An unused share
+  // goes to no other, so that the plan of a frame does not jump.
   const std::uint64_t band_share = std::max((memory_limit_ - others) / 4, least_band);
   const std::uint64_t share = (memory_limit_ - others - band_share) / 3;
   p.project_first = totals.vertices <= share / sizeof(ProjectedVertex);
@@ -149,8 +146,8 @@ FrameDriver::Split FrameDriver::split_work(const FrameRequest& request,
                               "memory limit; 'grouped' heeds it"));
     return p;
   }
-  // How much triangles are expanded to is known only in the middle of a draw. The part that does
-  // not fit then is drawn in turns, onto a surface.
+  // The size of what triangles are expanded to is known only during a draw. A part that does not
+  // fit is drawn in turns, onto a surface.
   p.expansion_bytes = needs_.expands ? share / 2 : 0;
   std::uint64_t bytes = static_cast<std::uint64_t>(needs_.triangle_bytes);
   if (request.has_quadrics()) bytes += sizeof(Quadric) + sizeof(Piece);
@@ -169,7 +166,6 @@ void FrameDriver::project(FrameRun& frame) {
       frame.project(draw);
 }
 
-/// Draws the view, in halves where it does not fit.
 void FrameDriver::draw_view(FrameRun& frame, std::uint64_t first, std::uint64_t last) {
   const Rect view = frame.view;
   frame.fits = true;
@@ -218,7 +214,7 @@ void FrameDriver::draw_band(FrameRun& frame, const Split& split, std::uint64_t t
     frame.view = band;
   } else {
     std::uint64_t drawn = 0;
-    do {  // once without triangles too: the background is drawn
+    do {  // also without triangles: the background is drawn
       const std::uint64_t count = std::min(split.batch, triangles - drawn);
       method_->draw(frame, first_id + drawn, first_id + drawn + count);
       drawn += count;
@@ -229,7 +225,7 @@ void FrameDriver::draw_band(FrameRun& frame, const Split& split, std::uint64_t t
   frame.watch.lap(frame.stats, "shade");
 }
 
-/// Projects all vertices, though few may be seen: to project them where they are read costs more.
+/// Projects all vertices, though few may be seen: projecting them where they are read costs more.
 void FrameDriver::shade_blocks(FrameRun& frame, const KnownBlocks& known) {
   constexpr std::size_t kChunk = 32;
   frame.for_each_index((known.blocks.size() + kChunk - 1) / kChunk, [&](std::size_t chunk) {
@@ -267,7 +263,7 @@ FrameStats FrameDriver::run(FrameRequest& request, const FramePlan& plan, bool b
                     .append("' draws triangles, square points and lines; round points, spheres, "
                             "cylinders, tubes and discs are the renderer's"));
   Totals totals = begin_frame(request);
-  // Draws by clusters project the vertices of those clusters that they draw, not all of them here.
+  // Draws by clusters project later, only the clusters that are drawn.
   keep_clusters(request.draws, by_clusters);
   totals.vertices = place_projected(request.draws);
   const Split split = split_work(request, totals);
@@ -316,7 +312,7 @@ FrameStats FrameDriver::draw(FrameRequest& request, const FramePlan& plan) {
 }
 
 FrameStats FrameDriver::shade(FrameRequest& request, const KnownBlocks& known) {
-  request.pass.load = true;  // no pixel without a surface is touched
+  request.pass.load = true;  // pixels without a surface stay as they are
   return run(request, plan(request), false,
              [&](FrameRun& frame, const Split&, std::uint64_t) { shade_blocks(frame, known); });
 }

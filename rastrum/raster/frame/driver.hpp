@@ -13,32 +13,30 @@
 
 namespace rastrum::raster {
 
-/// Begins a frame, whichever drawer draws it: numbers the draws, and clears the targets that are
-/// counted up or set only here and there (overdraw, errors), which must not lie on a device.
+/// Begins a frame for any drawer: numbers the draws, and clears the targets that are counted up or
+/// only partly set (overdraw, errors), which must not lie on a device.
 [[nodiscard]] Totals begin_frame(FrameRequest& request);
-/// Ends a frame: fills in the statistics of its triangles.
+/// Fills in the statistics of triangles.
 void end_frame(const Totals& totals, FrameStats& stats);
 
 class FrameDriver {
  public:
-  /// `memory_limit`: bytes of scratch that `memory` may hold, 0 for any. `threads`: null for the
+  /// `memory_limit`: bytes of scratch that `memory` may hold, 0: any. `threads`: null for the
   /// serial reference. Both outlive the driver.
   FrameDriver(std::unique_ptr<Method> method, std::uint64_t memory_limit, MemoryAccount& memory,
               parallel::Threads* threads);
   ~FrameDriver();
 
-  /// The plan of a frame, but for its path: the request, the method and the memory limit decide.
+  /// From the request, the method and the memory limit; all but the path.
   [[nodiscard]] FramePlan plan(const FrameRequest& request) const {
     return FramePlan::of(request, needs_.colors, memory_limit_ != 0);
   }
-  /// As FrameDrawer's.
   [[nodiscard]] FrameStats draw(FrameRequest& request, const FramePlan& plan);
   [[nodiscard]] FrameStats shade(FrameRequest& request, const KnownBlocks& known);
 
  private:
   struct Split;
   [[nodiscard]] Split split_work(const FrameRequest& request, const Totals& totals) const;
-  /// Begins a frame, calls work(frame, split, triangles), and ends the frame.
   template <class F>
   FrameStats run(FrameRequest& request, const FramePlan& plan, bool by_clusters, const F& work);
   void project(FrameRun& frame);
@@ -50,7 +48,7 @@ class FrameDriver {
   Needs needs_;
   std::uint64_t memory_limit_;
   parallel::Threads* threads_;
-  std::uint64_t frames_ = 0;  ///< drawn or under way
+  std::uint64_t frames_ = 0;  ///< drawn or in progress
   parallel::ScratchPool<ShaderOfThread> shaders_;
   ScratchBuffer<ProjectedVertex> projected_;
   ScratchBuffer<std::uint64_t> keys_;

@@ -15,7 +15,6 @@
 namespace rastrum::raster {
 namespace {
 
-/// The nearest surface of a bin.
 class NearestInBin : public BinKeys {
  public:
   static constexpr bool kColors = false;
@@ -59,8 +58,8 @@ class FastPath final : public Method {
 
   void draw(FrameRun& frame, std::uint64_t first, std::uint64_t last) override {
     const bool hides = frame.plan.hides;
-    // A memory limit plans only for pairs, which are drawn in turns, so it rules out lists of small
-    // triangles.
+    // A memory limit plans only for pairs, which can be drawn in turns, so it rules out lists of
+    // small triangles.
     const bool small = hides && frame.expansion_bytes == 0 && frame.kernel.raise_small != nullptr;
     const BinTable lists{
         {frame.view, kBinSize}, hides, hides && frame.request.has_quadrics(), 0, small};
@@ -81,7 +80,7 @@ class FastPath final : public Method {
   }
 
  private:
-  /// Calls then(part) after each part of a bin: where memory is planned, maybe more than once.
+  /// Calls then(part) after each part of a bin, more than once where memory is planned.
   template <class Then>
   void draw_groups(FrameRun& frame, const BinTable& lists, std::span<Group> groups,
                    const char* stage, const Then& then) {
@@ -104,7 +103,7 @@ class FastPath final : public Method {
         if (!part.is_empty && touched_[part.bin] == 0) begins_[part.bin] = 1;
     for (std::size_t bin = 0; bin < begins_.size(); ++bin) touched_[bin] |= begins_[bin];
     parts_.for_each(frame, [&](const BinPart& part) {
-      // The keys of a bin begin when the first group has something there.
+      // A bin's keys begin when the first group draws there.
       if (begins_bins_ && begins_[part.bin] != 0)
         load_keys(frame.request, part.rect, frame.surface_at(part.rect));
       if (!part.is_empty)
@@ -119,21 +118,20 @@ class FastPath final : public Method {
 
   void draw_what_is_seen(FrameRun& frame, const BinTable& lists);
 
-  /// Keeping keys for so many pixels, and looking at them, costs as much as drawing a hidden
-  /// triangle.
+  /// Keeping and testing keys of so many pixels costs as much as drawing a hidden triangle.
   static constexpr std::uint64_t kPixelsOfTriangle = 7;
 
   TriangleGroups groups_;
   Bins<NearestInBin> bins_;
   SeenFirst clusters_;
-  ScratchBuffer<std::uint64_t> keys_;  ///< of the view, where the driver keeps none
-  bool begins_bins_ = false;           ///< keys_ are begun where something is drawn
+  ScratchBuffer<std::uint64_t> keys_;  ///< of the view, where the driver has none
+  bool begins_bins_ = false;           ///< keys_ begin where something is drawn
   BinParts parts_;
   std::vector<std::uint8_t> touched_;  ///< by bin: keys_ have begun there
-  std::vector<std::uint8_t> begins_;   ///< and begin with what is drawn now
+  std::vector<std::uint8_t> begins_;   ///< they begin with the current groups
 };
 
-/// Two passes (SeenFirst). Keys are kept for the whole view between them.
+/// Two passes (SeenFirst), with keys of the whole view kept between them.
 void FastPath::draw_what_is_seen(FrameRun& frame, const BinTable& lists) {
   const bool own_surface = !frame.has_surface();
   if (own_surface) {
@@ -141,7 +139,7 @@ void FastPath::draw_what_is_seen(FrameRun& frame, const BinTable& lists) {
     frame.surface.keys = keys_.data();
     frame.bin_columns = lists.bins.columns();
   }
-  // A pass that loads has keys everywhere; else a bin's keys begin when something is drawn there.
+  // A pass that loads has keys everywhere. Otherwise a bin's keys begin with its first draw.
   const bool loads = frame.request.pass.load;
   touched_.assign(lists.bins.count(), own_surface && !loads ? 0 : 1);
   if (own_surface && loads)
@@ -165,7 +163,7 @@ void FastPath::draw_what_is_seen(FrameRun& frame, const BinTable& lists) {
   draw(clusters_.first(frame), "draw", [&](const BinPart& part) {
     if (touched_[part.bin] != 0) look(part);
   });
-  // Shades a part while its keys are in the cache, unless more may be drawn there.
+  // Shades a part while its keys are in cache, unless more may be drawn there.
   const bool shades = own_surface && !frame.plans_memory();
   draw(clusters_.rest(frame), shades ? "draw and shade" : "draw", [&](const BinPart& part) {
     if (!part.is_empty) look(part);

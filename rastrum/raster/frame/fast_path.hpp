@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The one fast path of opaque surfaces (called `grouped` and `atomic`, after the two axes of the
-// family's table): groups of triangles are set up and sorted into bins (bin/groups.hpp), a thread
-// owns a bin, raises its keys, leaves out what is hidden, and shades it in cache (bins.hpp).
+// The one fast path of opaque surfaces (called `grouped` and `atomic`, after the axes of the
+// family's table). Groups of triangles are set up and sorted into bins (bin/groups.hpp). A thread
+// owns a bin, raises its keys, leaves out what is hidden, and shades in cache (bins.hpp).
 #pragma once
 
 #include <memory>

@@ -24,7 +24,6 @@ void count_overdraw(const ImageView<std::uint32_t>& overdraw, std::span<const Bl
     }
 }
 
-/// Keeps, in order, the blocks in which `mask_of` leaves samples.
 template <class MaskOf>
 std::span<Block> keep(std::span<Block> blocks, const MaskOf& mask_of) {
   std::size_t kept = 0;
@@ -36,7 +35,6 @@ std::span<Block> keep(std::span<Block> blocks, const MaskOf& mask_of) {
   return blocks.first(kept);
 }
 
-/// The samples of a block whose keys are greater than those in `there`.
 std::uint64_t nearer(const Kernels& kernel, const Piece& piece, const Block& block,
                      const std::uint64_t* there) {
   alignas(64) std::uint64_t own[64];

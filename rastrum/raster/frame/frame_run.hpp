@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A frame under way: what the driver (driver.hpp) has begun and a method draws.
+// A frame in progress: what the driver (driver.hpp) has begun and a method draws.
 #pragma once
 
 #include <atomic>
@@ -17,28 +17,25 @@
 
 namespace rastrum::raster {
 
-/// Blocks that are collected before they are handed on.
 inline constexpr std::size_t kBlockCapacity = 512;
 
-/// The shader's memory that a thread keeps from frame to frame.
+/// A thread's shader memory, kept from frame to frame.
 struct ShaderOfThread {
   explicit ShaderOfThread(MemoryAccount& memory) : bin(memory) {}
 
   ShaderScratch scratch;
   ScratchBuffer<SeenBin> bin;  ///< one element, or empty
-  std::uint64_t frame = 0;     ///< number of the frame for which it was zeroed
+  std::uint64_t frame = 0;     ///< the frame for which it was zeroed
 };
 
 class FrameRun : public FrameContext {
  public:
   parallel::ScratchPool<ShaderOfThread>& shaders;
-  const std::uint64_t number;  ///< tells the frames of a driver apart
+  const std::uint64_t number;  ///< distinct for each frame of a driver
 
-  /// The keys of the view. Without them the method keeps the keys of its tiles and shades them
-  /// itself.
+  /// The keys of the view. Without them the method keeps and shades the keys of its tiles.
   SurfaceView surface{};
-  /// The number of bins in a row where keys lie bin after bin, so that a bin is one run of memory;
-  /// 0: they do not.
+  /// Bins in a row where keys lie bin after bin, so that a bin is contiguous; 0: they do not.
   int bin_columns = 0;
   bool fits = true;  ///< else the view was not drawn
 
@@ -49,7 +46,7 @@ class FrameRun : public FrameContext {
       : FrameContext(std::move(context)), shaders(shaders_of_threads), number(frame_number) {}
 
   [[nodiscard]] bool has_surface() const { return surface.keys != nullptr; }
-  /// The part of the surface that begins with `rect`. Where keys lie bin after bin it ends with the
+  /// The part of the surface that starts with `rect`. Where keys lie bin after bin it ends with the
   /// bin.
   [[nodiscard]] SurfaceView surface_at(Rect rect) const {
     const int bx = rect.x0 / kBlockSize, by = rect.y0 / kBlockSize;
@@ -61,37 +58,32 @@ class FrameRun : public FrameContext {
                             nullptr};
     return whole.part(bx, by);
   }
-  /// The context of a bin that the calling thread owns; all threads share the budget.
+  /// The context of the calling thread's bin. All threads share the budget.
   [[nodiscard]] BinContext context() const {
     const std::uint64_t share = fragment_bytes / static_cast<std::uint64_t>(concurrency());
     return {&request, &plan, &geometry, &kernel, share, shader_scratch(), clips};
   }
 
-  /// The shader's memory in this frame for the calling thread, zeroed when the thread first asks.
+  /// The calling thread's shader memory, zeroed at its first call in a frame.
   [[nodiscard]] void* shader_scratch() const;
   /// Shades and stores the blocks of `rect`. Thread-safe for distinct rectangles.
   void shade(const SurfaceView& from, Rect rect);
-  /// The same for a rectangle without any surface.
   void shade_nothing(Rect rect);
-  /// Hands the opaque surfaces of a block to the sink. Returns which pixels have one.
+  /// Hands a block's opaque surfaces to the sink. Returns which pixels have one.
   std::uint64_t hand_on(const std::uint64_t* keys, int bx, int by) const;
 
-  /// Finds the masks of blocks that have none yet (0), as far as they lie in the view. Returns
-  /// those that cover something.
+  /// Finds missing masks (0) of blocks, cut to the view. Returns the blocks that cover something.
   [[nodiscard]] std::span<Block> cover(const Piece* pieces, std::span<Block> blocks) const;
-  /// Counts fragments and overdraw.
   void count_fragments(std::span<const Block> blocks);
   void count_fragments(Rect bin, std::span<const BinFragment> fragments);
   /// Applies the fragment test and returns the blocks in which it leaves something. `seen`: the
-  /// maximum of keys so far, so that hidden fragments are dropped untested; null: not known. With
-  /// several samples nothing is tested here: a triangle is tested once a pixel, where samples are
-  /// resolved.
+  /// maximum of keys so far, so that hidden fragments are dropped untested; null: unknown. With
+  /// several samples nothing is tested here, but once a pixel where samples are resolved.
   [[nodiscard]] std::span<Block> test(const Piece* pieces, std::span<Block> blocks,
                                       const SurfaceView* seen) const;
 
  private:
-  /// The place where the triangles of `bin` are set up before its blocks are shaded; null: they are
-  /// not.
+  /// Where the triangles of `bin` are set up before its blocks are shaded; null: they are not.
   [[nodiscard]] SeenBin* seen_bin(const BinSurface& bin) const;
 };
 

@@ -10,8 +10,8 @@
 namespace rastrum::raster {
 namespace {
 
-/// Keeps the maximum key of each covered sample. Blocks of one sample, so that a fragment test sees
-/// the same interface as everywhere.
+/// Keeps the maximum key of each covered sample. Uses blocks of one sample, so that fragment tests
+/// have their usual interface.
 void draw_piece(FrameRun& frame, const Piece& piece) {
   const FrameRequest& request = frame.request;
   for_each_covered(piece, frame.view, [&](int x, int y) {

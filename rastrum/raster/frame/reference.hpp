@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The reference: rows of samples, triangle after triangle, one thread, into the maximum of the keys
-// in a full-frame visibility buffer. Written for plainness; the others must equal it.
+// The reference: rows of samples, triangle after triangle, on one thread, into the maximum of keys
+// in a full-frame visibility buffer. Written for plainness; all others must equal it.
 #pragma once
 
 #include <memory>
@@ -13,9 +13,8 @@
 
 namespace rastrum::raster {
 
-/// Calls f(draw, primitive) for primitives [first, last) of the frame's numbering, in order, as
-/// long as nobody asks to stop. Throws Error{invalid_argument} naming an index that is out of
-/// range.
+/// Calls f(draw, primitive) for primitives [first, last) of the frame's numbering, in order, until
+/// a stop is asked for. Throws Error{invalid_argument} naming an index that is out of range.
 template <class F>
 void for_each_primitive(const FrameRun& frame, std::uint64_t first, std::uint64_t last,
                         const F& f) {

@@ -19,13 +19,12 @@
 namespace rastrum::raster {
 namespace {
 
-/// Keeping keys of so many samples for another pass, and looking at them, costs as much as drawing
-/// a hidden triangle.
+/// Keeping and testing keys of so many samples costs as much as drawing a hidden triangle.
 constexpr std::uint64_t kSamplesOfTriangle = 12;
-/// A look at what hides costs about as much as drawing some ten triangles for each block.
+/// Finding a bin's depth bounds costs, for each block, about as much as drawing ten triangles.
 constexpr std::size_t kLookAfter = 512;
 
-/// The nearest surfaces of a bin, at all samples. A thread's own.
+/// The nearest surfaces of a bin at all samples, for one thread.
 class SampledBin {
  public:
   explicit SampledBin(MemoryAccount& memory) : tile_(memory), memory_(memory) {}
@@ -43,12 +42,11 @@ class SampledBin {
     raise(frame, lists, groups, bin);
     finish(frame);
   }
-  /// Keys of a bin.
   [[nodiscard]] static std::size_t keys_size(const FrameRun& frame) {
     return static_cast<std::size_t>(frame.request.samples) / 4 * SampledKeys::kFour;
   }
-  /// The same in steps, to keys that the caller keeps between them: what groups have in a bin,
-  /// first or behind what was there. Tells `depths`.
+  /// The same in steps, into keys that the caller keeps: what groups have in a bin, first or after
+  /// earlier groups. Updates `depths`.
   void raise(FrameRun& frame, const BinTable& lists, std::span<const Group> groups, std::size_t bin,
              std::uint64_t* keys, bool is_first, DepthMap& depths) {
     const Rect rect = lists.bins.rect(bin);
@@ -61,7 +59,6 @@ class SampledBin {
     look(frame);
     depths.look(bounds_, rect);
   }
-  /// Colours from the keys.
   void finish(FrameRun& frame, Rect rect, std::uint64_t* keys) {
     begin(frame, rect, keys);
     finish(frame);
@@ -102,7 +99,7 @@ class SampledBin {
     colors_.begin();
     bounds_.restart();
     seen_ = 0;
-    // Blocks outside of the image count as full, so that nothing is drawn there.
+    // Blocks outside of the image count as full, so nothing is drawn there.
     for (int i = 0; i < kBlocksPerBin; ++i)
       if (i % kBlocksPerBinRow >= block_columns(rect) || i / kBlocksPerBinRow >= block_rows(rect))
         bounds_.block[i] = 1;
@@ -121,7 +118,7 @@ class SampledBin {
     seen_ = 0;
     frame.kernel.find_sampled_bounds(keys_, rect_, bounds_);
   }
-  /// Raises keys by points, which are at all samples of their pixels.
+  /// Points cover all samples of their pixels.
   void raise_fragments(FrameRun& frame, std::span<const BinFragment> fragments) {
     for (std::size_t s = 0; s < keys_.samples.size() && !fragments.empty(); ++s) {
       frame.count_fragments(rect_, fragments);
@@ -153,8 +150,7 @@ class SampledBin {
     }
     raise_others(frame);
   }
-  /// Raises keys by all other pieces (tested, counted, no triangles), sample by sample and block by
-  /// block.
+  /// Raises keys by all other pieces (tested, counted, no triangles), by sample and block.
   void raise_others(FrameRun& frame) {
     const std::size_t count = std::exchange(other_count_, 0);
     for (std::size_t s = 0; s < keys_.samples.size() && count != 0; ++s) {
@@ -192,7 +188,6 @@ class SampledBin {
     const auto for_each = [](std::uint64_t mask, const auto& f) {
       for (; mask != 0; mask &= mask - 1) f(static_cast<std::size_t>(std::countr_zero(mask)));
     };
-    // Hidden fragments are not tested.
     std::uint64_t nearer = 0;
     for_each(block.mask, [&](std::size_t i) { nearer |= std::uint64_t{own[i] > key(i)} << i; });
     block.mask = nearer;
@@ -206,7 +201,7 @@ class SampledBin {
         colors_.resolve(context_, keys_, bx, by, surface.block(bx, by), *surface.colors_of(bx, by));
     if (context_.plan->translucent != Translucent::blended) hand_on();
   }
-  /// Hands the keys of each sample to a sink that takes keys.
+  /// For a sink that takes keys.
   void hand_on() {
     alignas(64) std::uint64_t plane[64];
     for (int by = rect_.y0 / kBlockSize; by * kBlockSize < rect_.y1; ++by)
@@ -232,7 +227,7 @@ class SampledBin {
   Rect rect_;
   SampledKeys keys_;
   DepthBounds bounds_;
-  std::size_t seen_ = 0;  ///< pieces since the last look
+  std::size_t seen_ = 0;  ///< pieces since the bounds were found
   SampledColors colors_;
   alignas(64) Block blocks_[kBlockCapacity];
   std::size_t other_count_ = 0;
@@ -288,14 +283,13 @@ class SampledPath final : public Method {
   [[nodiscard]] bool takes_clusters(const FrameRequest& /*request*/) const override { return true; }
 
  private:
-  /// Whether keys of the whole view, which two passes take, are kept: of pictures of usual size,
-  /// and not where memory is planned.
+  /// Whether keys of the whole view may be kept for two passes: in pictures of usual size without
+  /// planned memory.
   static bool may_keep_keys(const FrameRun& frame, const BinTable& lists) {
     constexpr std::uint64_t kMostKeys = (std::uint64_t{1} << 30) / sizeof(std::uint64_t);
     return frame.view_bytes == 0 && lists.bins.count() <= kMostKeys / SampledBin::keys_size(frame);
   }
 
-  /// Two passes (SeenFirst).
   void draw_what_is_seen(FrameRun& frame, const BinTable& lists) {
     const std::size_t size = SampledBin::keys_size(frame);
     keys_.reserve(lists.bins.count() * size);
@@ -337,7 +331,7 @@ class SampledPath final : public Method {
   TriangleGroups groups_;
   SeenFirst clusters_;
   ScratchBuffer<std::uint64_t> keys_;  ///< bin after bin, where some clusters are drawn first
-  std::vector<std::uint8_t> touched_;  ///< by bin: they have begun there
+  std::vector<std::uint8_t> touched_;  ///< by bin: keys_ have begun there
   BinParts parts_;
   parallel::ScratchPool<SampledBin> bins_;
 };

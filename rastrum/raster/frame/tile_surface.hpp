@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The keys, and colours, of a tile that a thread owns: they stay in its cache from the first piece
-// to the last pixel.
+// The keys and colours of a thread's tile. They stay in its cache from the first piece to the last
+// pixel.
 #pragma once
 
 #include <rastrum/core/memory.hpp>
@@ -12,11 +12,11 @@ class TileSurface {
  public:
   explicit TileSurface(MemoryAccount& memory) : keys_(memory), colors_(memory) {}
 
-  /// A surface for `rect`, of whole blocks and at most `tile_px` across, which begins with what the
-  /// passes before left (load_keys). Valid until the next call.
+  /// A surface for `rect`, of whole blocks and at most `tile_px` across. It begins with what
+  /// earlier passes left (load_keys) and is valid until the next call.
   [[nodiscard]] SurfaceView begin(const FrameRequest& request, Rect rect, int tile_px,
                                   bool colors) {
-    // Rows of a whole tile, also at the image's edge: kernels like one stride.
+    // Rows of a whole tile, also at the image's edge: kernels are faster with one stride.
     SurfaceView surface{rect.x0 / kBlockSize, rect.y0 / kBlockSize,
                         (tile_px + kBlockSize - 1) / kBlockSize, nullptr, nullptr};
     const std::size_t blocks =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The tests of hierarchical Z, for the scalar and the SIMD form of Kernels::cover.
+// Hierarchical Z tests, for the scalar and the SIMD form of Kernels::cover.
 #pragma once
 
 #include <rastrum/raster/kernels/kernels.hpp>
@@ -7,19 +7,18 @@
 
 namespace rastrum::raster {
 
-/// Asks for one piece after the other in one bin.
+/// Tests one piece after the other in a bin.
 class HiddenTest {
  public:
   HiddenTest(DepthBounds* bounds, Rect bin) : bounds_(bounds), bin_(bin) {}
 
-  /// Whether no sample of the piece in `box` can be seen.
+  /// Whether all samples of the piece in `box` are hidden.
   [[nodiscard]] bool hides_piece(const Piece& piece, Rect box) {
     if (bounds_ == nullptr || !(bounds_->bin > 0) || !is_below(piece, box, bounds_->bin))
       return false;
     ++bounds_->hidden_pieces;
     return true;
   }
-  /// The same for a block.
   [[nodiscard]] bool hides_block(const Piece& piece, int bx, int by) {
     if (bounds_ == nullptr) return false;
     const int x0 = bx * kBlockSize, y0 = by * kBlockSize;

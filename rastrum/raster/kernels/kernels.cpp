@@ -254,7 +254,7 @@ void store_blended_scalar(const BlockColors& colors, std::uint64_t covered,
   }
 }
 
-/// Does without deferred pieces.
+/// Has no deferred pieces.
 SetupOutput defer_scalar(const QuadricInput& in, Piece*, std::uint32_t* slow) noexcept {
   SetupOutput out;
   out.slow = in.count;
@@ -284,7 +284,8 @@ const Kernels& kernels(Isa isa) {
   static const std::array<Kernels, kIsaCount> tables = [] {
     std::array<Kernels, kIsaCount> all;
     all.fill(kScalar);
-    // Only those of this machine: filling a table is compiled for its instruction set, too.
+    // This machine's only, since the code that fills a table is compiled for its instruction set,
+    // too.
     for (const Isa available : available_isas()) {
       Kernels& table = all[static_cast<std::size_t>(available)];
       for (const FillKernels fill : {fill_setup_kernels(available), fill_cover_kernels(available),

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the Highway sources meet the table of kernels.
+// Connects the Highway sources with the table of kernels.
 #pragma once
 
 #include <rastrum/raster/kernels/kernels.hpp>
 
 namespace rastrum::raster {
 
-/// Sets a part of the table.
 using FillKernels = void (*)(Kernels&);
 
-/// Each sets its part to the kernels of `isa`; null where they were not compiled.
+/// Each sets its part to the kernels of `isa`; null where those were not compiled.
 [[nodiscard]] FillKernels fill_setup_kernels(Isa isa) noexcept;
 [[nodiscard]] FillKernels fill_cover_kernels(Isa isa) noexcept;
 [[nodiscard]] FillKernels fill_block_kernels(Isa isa) noexcept;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Names for arithmetic in lanes, so that a body of plain operators serves floats and vectors: F is
-// the lanes, V3 and V4 three and four of them. rules/scalar_lane.hpp has the same of one float. A
-// body that is written in these names is a NAME.inl, which includes bodies alone and which headers
-// include into a namespace of lanes or of one float (decision 0124).
+// Names for arithmetic in lanes, so that one body of plain operators serves floats and vectors. F
+// is the lanes, V3 and V4 three and four of them; rules/scalar_lane.hpp has the same for one float.
+// A body in these names is a NAME.inl. It includes only bodies, and headers include it into a
+// namespace of lanes or of one float (decision 0124).
 #if defined(RASTRUM_RASTER_KERNELS_LANE_MATH_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RASTRUM_RASTER_KERNELS_LANE_MATH_INL_HPP
 #undef RASTRUM_RASTER_KERNELS_LANE_MATH_INL_HPP
@@ -39,7 +39,6 @@ HWY_INLINE void store(const V3& v, float* x, float* y, float* z) {
   hn::Store(v.y, hn::DFromV<F>(), y);
   hn::Store(v.z, hn::DFromV<F>(), z);
 }
-/// By axis, from element `at` on.
 template <std::size_t kCount>
 HWY_INLINE V3 load(const float (&v)[3][kCount], std::size_t at = 0) {
   return load(v[0] + at, v[1] + at, v[2] + at);
@@ -82,14 +81,13 @@ HWY_INLINE V4 operator*(const V4& a, F s) {
 HWY_INLINE F square_root(F v) {
   return hn::Sqrt(v);
 }
-/// The smaller, the larger. Not defined for NaN, where processors differ.
+/// Not defined for NaN, where processors differ.
 HWY_INLINE F min_of(F a, F b) {
   return hn::Min(a, b);
 }
 HWY_INLINE F max_of(F a, F b) {
   return hn::Max(a, b);
 }
-/// Lanes of `mask` from `yes`, the rest from `no`.
 template <class Mask>
 HWY_INLINE F choose(Mask mask, F yes, F no) {
   return hn::IfThenElse(mask, yes, no);
@@ -103,7 +101,6 @@ HWY_INLINE V4 choose(Mask mask, const V4& yes, const V4& no) {
   return {choose(mask, yes.x, no.x), choose(mask, yes.y, no.y), choose(mask, yes.z, no.z),
           choose(mask, yes.w, no.w)};
 }
-/// The same where `no` is 0.
 template <class Mask>
 HWY_INLINE F choose_or_zero(Mask mask, F yes) {
   return hn::IfThenElseZero(mask, yes);
@@ -114,18 +111,16 @@ HWY_INLINE V4 choose_or_zero(Mask mask, const V4& yes) {
           choose_or_zero(mask, yes.w)};
 }
 
-// Look-ups: loads from memory by lanes, and calls that cannot be made for all lanes at once.
+// Look-ups: loads by lane, and calls that cannot be made for all lanes at once.
 
-/// Whole numbers.
 using Whole = hn::Vec<hn::RebindToSigned<hn::DFromV<F>>>;
-/// Rounds towards 0; `v` must fit in an int.
+/// Towards 0; `v` must fit an int.
 HWY_INLINE Whole truncated(F v) {
   return hn::ConvertTo(hn::RebindToSigned<hn::DFromV<F>>(), v);
 }
 HWY_INLINE F as_float(Whole v) {
   return hn::ConvertTo(hn::DFromV<F>(), v);
 }
-/// a · by + b.
 HWY_INLINE Whole times_plus(Whole a, int by, Whole b) {
   return hn::Add(hn::Mul(a, hn::Set(hn::DFromV<Whole>(), by)), b);
 }
@@ -144,7 +139,7 @@ HWY_INLINE bool none(Mask mask) {
   return hn::AllFalse(hn::DFromV<F>(), mask);
 }
 
-/// Calls of.at for each lane, one by one. It makes a vector from a vector and a number.
+/// Calls of.at for each lane. It makes a vector from a vector and a number.
 template <class Of>
 HWY_INLINE V3 lane_by_lane(const Of& of, const V3& a, F b) {
   const hn::DFromV<F> d;
@@ -170,8 +165,8 @@ HWY_INLINE V3 lane_by_lane(const Of& of, const V3& a, F b) {
 
 // Colours to 8 bits: quantize (color.hpp).
 
-/// The result is in the lowest 8 bits; above them are the bits of 2²³. A sum of that size has no
-/// bits for fractions, so it is rounded to the nearest whole number, ties to even.
+/// The result is in the lowest 8 bits, below the bits of 2²³. A sum of that size has no fraction
+/// bits, so it is rounded to the nearest whole number, ties to even.
 template <class V>
 HWY_INLINE auto quantize_lanes(V v) {
   const hn::DFromV<V> d;
@@ -181,13 +176,13 @@ HWY_INLINE auto quantize_lanes(V v) {
                      hn::Add(scaled, hn::Set(d, 8388608.0F)));
 }
 
-/// Pixels with the alpha that `alpha` has in its highest 8 bits; the others are 0.
+/// Pixels whose alpha is in the highest 8 bits of `alpha`; its other bits are 0.
 template <class V>
 HWY_INLINE auto packed(V r, V g, V b, std::uint32_t alpha) {
   const hn::RebindToUnsigned<hn::DFromV<V>> d;
   const auto green_blue =
       hn::Or(hn::ShiftLeft<8>(quantize_lanes(g)), hn::ShiftLeft<16>(quantize_lanes(b)));
-  // The shifts drop the bits of 2²³ from green and blue; those of red become the alpha.
+  // The shifts drop the 2²³ bits from green and blue; red's become the alpha.
   constexpr std::uint32_t kSum = 0x4B000000;
   const auto red = hn::Add(quantize_lanes(r), hn::Set(d, alpha - kSum));
   return hn::Or(red, green_blue);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Vector types that the SIMD leaves share, once per instruction set. A row of a block is 8 samples,
-// so vectors have 4 or 8 lanes; a source that knows no rows may say before its includes how many it
-// wants at most (RASTRUM_MOST_LANES 16).
+// Vector types that SIMD sources share, once per instruction set. A row of a block has 8 samples,
+// so vectors have 4 or 8 lanes. A source without rows may first define the most that it wants
+// (RASTRUM_MOST_LANES 16).
 //
 // Highway compiles a source once per target; this guard lets the header in once per target too.
 #if defined(RASTRUM_RASTER_KERNELS_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
@@ -22,10 +22,10 @@
 #ifndef RASTRUM_MOST_LANES
 #define RASTRUM_MOST_LANES 8
 #endif
-/// kLanes, where the preprocessor asks.
+/// kLanes for the preprocessor.
 #define RASTRUM_LANE_COUNT HWY_MIN(HWY_MAX_BYTES / 4, RASTRUM_MOST_LANES)
 
-// The scalar kernels stand in for Highway's baseline targets.
+// The scalar kernels replace Highway's baseline targets.
 #if HWY_TARGET != HWY_SCALAR && HWY_TARGET != HWY_EMU128
 HWY_BEFORE_NAMESPACE();
 namespace rastrum::raster::HWY_NAMESPACE {
@@ -46,7 +46,7 @@ constexpr std::size_t kLanes64 = hn::MaxLanes(F64{});
 constexpr std::size_t kHalves = kLanes / kLanes64;
 using I128 = hn::Full128<std::int32_t>;
 
-/// Element m keeps the lanes of the bits of m.
+/// Element m keeps the lanes of m's bits.
 struct alignas(32) LaneTable {
   std::int64_t keep[1 << kLanes64][kLanes64];
 };
@@ -90,14 +90,14 @@ HWY_INLINE std::uint32_t lane_bits(M mask) {
   return bits & ((1U << kLanes) - 1);
 }
 
-/// Lanes of the low bits of `bits`.
+/// The lanes of the low bits of `bits`.
 HWY_INLINE hn::Mask<U32> lane_mask(std::uint64_t bits) {
   // LoadMaskBits reads whole bytes.
   const std::uint64_t memory = bits & ((1U << kLanes) - 1);
   return hn::LoadMaskBits(U32{}, reinterpret_cast<const std::uint8_t*>(&memory));
 }
 
-/// Half `h` of a vector, each number in 64 bits.
+/// Half `h` of a vector, widened to 64 bits.
 HWY_INLINE hn::Vec<hn::RebindToUnsigned<I64>> widened_half(hn::Vec<U32> v, std::size_t h) {
   const hn::Half<U32> dh;
 #if HWY_MAX_BYTES >= 32
@@ -109,8 +109,7 @@ HWY_INLINE hn::Vec<hn::RebindToUnsigned<I64>> widened_half(hn::Vec<U32> v, std::
   return hn::PromoteTo(hn::RebindToUnsigned<I64>{}, half);
 }
 
-/// Calls use(h, keys) with the keys that depths, which it clamps, make with a piece's low part:
-/// kHalves vectors.
+/// Clamps the depths, and calls use(h, keys) for kHalves vectors of keys with a piece's low part.
 template <class Use>
 HWY_INLINE void for_each_half(F depth, std::uint64_t low, const Use& use) {
   const F32 df;

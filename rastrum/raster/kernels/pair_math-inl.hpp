@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The names of lane_math-inl.hpp for two vectors at once: a body of one long chain of operations
-// (shade/lit_fixed.inl) waits for each of them, and two chains side by side wait for both
-// together. A processor does not find the second one by itself, for it looks ahead by fewer
-// operations than a chain has.
+// The names of lane_math-inl.hpp for two vectors at once. One long chain of operations
+// (shade/lit_fixed.inl) waits for each of them; two chains side by side overlap their waits. A
+// processor does not overlap them by itself, since it looks ahead by less than a chain.
 #if defined(RASTRUM_RASTER_KERNELS_PAIR_MATH_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RASTRUM_RASTER_KERNELS_PAIR_MATH_INL_HPP
 #undef RASTRUM_RASTER_KERNELS_PAIR_MATH_INL_HPP

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Names for arithmetic in float64 lanes, and the quadrics that rules/ writes in them for doubles
-// (`scalar_wide` in rules/quadric.hpp) and vectors.
+// Names for arithmetic in float64 lanes, and the quadrics of rules/ in them. `scalar_wide` in
+// rules/quadric.hpp has both for doubles.
 #if defined(RASTRUM_RASTER_KERNELS_WIDE_LANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RASTRUM_RASTER_KERNELS_WIDE_LANES_INL_HPP
 #undef RASTRUM_RASTER_KERNELS_WIDE_LANES_INL_HPP

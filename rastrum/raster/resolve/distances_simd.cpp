@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Distances of a block with Highway, compiled once per instruction set: a pixel a lane of float64.
-// It gives distances_plain's bits, operation by operation.
+// Distances of a block with Highway, compiled once per instruction set: float64, a pixel a lane,
+// with distances_plain's operations and bits.
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/raster/resolve/distances_simd.cpp"
@@ -26,7 +26,7 @@ HWY_INLINE D line(double at0, double slope, D t) {
   return hn::Add(hn::Set(d, at0), hn::Mul(hn::Set(d, slope), t));
 }
 
-/// SurfaceScene::ray_length of the pixels whose centres are (x, y).
+/// SurfaceScene::ray_length at the centres (x, y).
 HWY_INLINE D ray_length(const SurfaceScene& scene, D x, double y) {
   const F64 d;
   const ViewRays& r = scene.lit.rays;

@@ -14,7 +14,6 @@
 namespace rastrum::raster {
 namespace {
 
-/// The part of the image that a block covers.
 struct Window {
   int x0, y0, columns, rows;
   [[nodiscard]] bool whole() const { return columns == kBlockSize && rows == kBlockSize; }
@@ -27,9 +26,8 @@ Vec4 straight(Rgba8 c) {
   return straight_from_rgba8(c);
 }
 
-/// Stores colours in every case: float targets, pictures that are drawn over, blocks cut by the
-/// image's edge, passes that touch some pixels alone. Pixels that are not in `touched` keep what
-/// they have.
+/// Stores colours in the general case: float targets, pictures that are drawn over, blocks cut by
+/// the image's edge, passes that touch only some pixels. Keeps pixels outside of `touched`.
 void store_colors(const Targets& targets, const FramePlan& plan, const BlockColors& colors,
                   std::uint64_t covered, std::uint64_t touched, const Window& w, bool wants_8_bit) {
   const Backdrop& backdrop = plan.backdrop;
@@ -96,7 +94,7 @@ void resolve_colors(const FrameRequest& request, const FramePlan& plan, const Fr
     store_colors(targets, plan, *colors, block.covered, touched, w, wants_8_bit);
 }
 
-/// Shades into `colors` and stores all of Targets::extra, which are shaded with them.
+/// Shades into `colors`, and shades and stores Targets::extra with them.
 void shade_extra(const FrameRequest& request, const FrameGeometry& frame, VisibleBlock block,
                  std::uint64_t touched, const Window& w, BlockColors& colors) {
   BlockColors extra[kMaxExtraTargets];

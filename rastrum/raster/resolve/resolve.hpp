@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From visibility keys to the images a caller asked for. Shared by every rasterizer: shading and
+// Visibility keys to the images that a caller asked for. All rasterizers share this, so shading and
 // output exist once.
 #pragma once
 
@@ -10,29 +10,26 @@
 
 namespace rastrum::raster {
 
-/// Shades one 8 × 8 block (`keys`: 64, 64-byte aligned) and writes its part of every target. Pixels
-/// outside the image are left out, and so are those that an earlier pass won (Pass::load).
-/// `scratch` is the shader's (hooks.hpp). `shaded`: the colours where visibility has shaded
-/// already, else null. `to`: where to write the 8-bit colours of a block that lies in the image
-/// wholly, in a frame that writes all pixels; null: to their place. `bin`: VisibleBlock::bin.
-/// Returns how many pixels hold a surface of this pass.
+/// Shades one 8 × 8 block (`keys`: 64, 64-byte aligned) and writes its part of every target. Leaves
+/// out pixels outside the image and those that an earlier pass won (Pass::load). `scratch`: the
+/// shader's (hooks.hpp). `shaded`: colours that visibility has made, else null. `to`: where 8-bit
+/// colours go if the block lies wholly in the image and the frame writes all pixels; null: to their
+/// place. `bin`: VisibleBlock::bin. Returns the number of pixels with a surface of this pass.
 int resolve_block(const FrameRequest& request, const FramePlan& plan, const FrameGeometry& frame,
                   const std::uint64_t* keys, int x0, int y0, void* scratch,
                   const BlockColors* shaded = nullptr, BlockPixels to = {},
                   const SeenBin* bin = nullptr) noexcept;
 
-/// Sets the keys that the blocks of `rect` begin with: 0, or those of the passes before
-/// (Pass::load).
+/// Sets the first keys of the blocks of `rect`: 0, or those of earlier passes (Pass::load).
 void load_keys(const FrameRequest& request, Rect rect, const SurfaceView& surface) noexcept;
 
-/// The pixels of `covered` that hold a surface of this pass: ids count on from pass to pass.
+/// The pixels of `covered` with a surface of this pass: ids count on from pass to pass.
 [[nodiscard]] std::uint64_t of_this_pass(const FrameRequest& request, const std::uint64_t* keys,
                                          std::uint64_t covered) noexcept;
 
-/// Whether `rect`, at most a bin, is of the whole lines that FramePlan::streams is about.
+/// Whether `rect`, at most a bin, has the whole lines of FramePlan::streams.
 [[nodiscard]] bool streams_colors(const FramePlan& plan, Rect rect) noexcept;
 
-/// Writes the targets of a rectangle in which this pass has no surface.
 void resolve_empty(const FrameRequest& request, const FramePlan& plan, Rect rect) noexcept;
 
 }  // namespace rastrum::raster

@@ -15,13 +15,12 @@ namespace {
 constexpr std::uint16_t kNothing = 64 * (1 + kMaxSamples);
 }  // namespace
 
-/// Where a primitive is shaded in a pixel.
 struct SampledColors::Place {
   std::uint64_t key = 0;
   SampleOffset at{};  ///< from the pixel's centre
 };
 
-/// The edges of a triangle's piece: base + a x + b y ≥ 0 is inside, x and y in n.8.
+/// The edges of a triangle's piece: base + a x + b y ≥ 0 is inside, in n.8.
 struct SampledColors::ExactEdges {
   std::int64_t base[3];
   std::int32_t a[3], b[3];
@@ -34,8 +33,8 @@ struct SampledColors::ExactEdges {
       base[i] = edge_value<std::int64_t>(a[i], b[i], -piece.x[i], -piece.y[i]);
     }
   }
-  /// Whether the sample of pixel (x, y) at `at` is inside. The piece's edges there equal those of
-  /// the moved piece at the centre.
+  /// Whether the sample at `at` in pixel (x, y) is inside. This equals what the moved piece covers
+  /// at the centre.
   [[nodiscard]] bool covers(int x, int y, SampleOffset at) const {
     const std::int64_t px = std::int64_t{x} * kSubpixels + kHalfPixel + at.x;
     const std::int64_t py = std::int64_t{y} * kSubpixels + kHalfPixel + at.y;
@@ -53,11 +52,11 @@ std::uint64_t key_of(const Piece& piece, SampleOffset at, int x, int y) {
 
 }  // namespace
 
-/// A primitive found again from its vertices: all that a pixel that sees it reads, in a cache line.
+/// A primitive found again from its vertices: in one cache line, all that its pixels read.
 struct alignas(64) SampledColors::Primitive {
   enum class Kind : std::uint8_t { triangle, clipped, point_or_line };
 
-  std::uint64_t low = 0;  ///< of its keys; 0 where nothing is kept
+  std::uint64_t low = 0;  ///< its keys' low part; 0: none is kept
   ExactEdges edges;
   Kind kind;
   bool has_plane;  ///< its plane in planes_ is set
@@ -71,8 +70,7 @@ struct SampledColors::Clipped {
   Piece pieces[kMaxPieces];
 };
 
-/// Finds places. Neighbours, also those of the next block, mostly share their primitives, so some
-/// of these are kept.
+/// Finds places. Neighbours, even in the next block, mostly share primitives, so some are kept.
 class SampledColors::Finder {
  public:
   Finder(const BinContext& context, const SampledColors& colors)
@@ -83,8 +81,8 @@ class SampledColors::Finder {
         planes_(colors.planes_.get()),
         clipped_(colors.clipped_.get()) {}
 
-  /// Finds where in the pixel the primitive of `key` is shaded; some sample of the pixel sees it.
-  /// `all`: all of them do, and so would the centre, about which they lie.
+  /// Finds where in the pixel the primitive of `key`, which some sample sees, is shaded. `all`: all
+  /// samples see it, and so would the centre between them.
   Place find(std::uint64_t key, int x, int y, bool all) {
     const std::uint64_t low = key & kIdMask;
     Primitive& p = kept_[low % kKept];
@@ -95,7 +93,7 @@ class SampledColors::Finder {
     SampleOffset at{};
     if (!p.edges.covers(x, y, at))
       for (const SampleOffset offset : offsets_) {
-        at = offset;  // some sample sees it
+        at = offset;  // some sample covers
         if (p.edges.covers(x, y, at)) break;
       }
     return {wants_depth_ ? key_at(p, at, x, y) : key, at};
@@ -146,8 +144,7 @@ class SampledColors::Finder {
     piece.low = p.low;
     return key_of(piece, at, x, y);
   }
-  /// The same for a triangle that has to be clipped: by the nearest of the pieces that cover the
-  /// place.
+  /// The same for a triangle that is clipped, by the nearest of the pieces that cover the place.
   Place find_clipped(std::uint64_t key, int x, int y) {
     const std::uint64_t low = key & kIdMask;
     Clipped& c = clipped_[low % kKeptClipped];
@@ -158,7 +155,7 @@ class SampledColors::Finder {
       if (covers_at(c, at, x, y, place)) return place;
     return place;  // not reached
   }
-  /// Clips the triangle once for all pixels and samples: moving its vertices moves its pieces.
+  /// Clips the triangle once for all pixels and samples: its pieces move with its vertices.
   void begin(std::uint64_t low, Clipped& c) {
     c.low = low;
     c.count = 0;
@@ -186,9 +183,9 @@ class SampledColors::Finder {
   std::span<const SampleOffset> offsets_;
   bool wants_depth_;  ///< else any key of the primitive will do
   const Draw* draw_ = nullptr;
-  Primitive* kept_;   ///< kKept, by the last bits of `low`
+  Primitive* kept_;   ///< kKept, by the low bits of `low`
   Piece* planes_;     ///< their planes, for depth
-  Clipped* clipped_;  ///< kKeptClipped, by the last bits of `low`
+  Clipped* clipped_;  ///< kKeptClipped, by the low bits of `low`
 };
 
 SampledColors::SampledColors()
@@ -218,7 +215,7 @@ void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, 
   centred_ = 0;
   packed_ = groups_ = 0;
   // A triangle that covers two opposite samples, or all, covers the centre between them, unless it
-  // was clipped: its pieces may lie around the centre.
+  // was clipped: then its pieces may lie around the centre.
   const bool wants_depth = raster::wants_depth(context.request->shading);
   const bool knows = !context.clips && !wants_depth;
   const bool has_places = keys.has_places && !wants_depth;
@@ -263,7 +260,7 @@ void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, 
   flush(context);
   if (centred_ != 0) shade(context, centre_keys_, centred_, nullptr, colors_[0]);
 
-  // Sums sample after sample, in the order in which layers add them up.
+  // Sums sample by sample, in the layers' order.
   const float share = 1.0F / static_cast<float>(samples);
   const auto mean = [&](const float* of_centres, float* to) {
     for (std::size_t i = 0; i < 64; ++i) to[i] = 0;
@@ -277,7 +274,7 @@ void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, 
     mean(colors_[0].b, out.b);
     mean(colors_[0].a, out.a);
   }
-  // All other pixels, whose samples may see different things.
+  // The other pixels, whose samples may see different surfaces.
   for (std::uint64_t m = covered & ~alike; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
     Vec4 sum;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The colours of opaque surfaces with several samples a pixel, from the keys of each sample: a
-// primitive is shaded once in a pixel, at the pixel's centre if it covers it, else at the first
-// sample that it covers (docs/outputs.md). The keys say which primitive is seen, not where else
-// it is, so its coverage is found again from its vertices.
+// Colours of opaque surfaces with several samples a pixel, from each sample's key. A primitive is
+// shaded once in a pixel: at the centre or, if it misses that, at the first sample that it covers
+// (docs/outputs.md). A key does not say where, so coverage is found again from the vertices.
 #pragma once
 
 #include <cstddef>
@@ -15,22 +14,22 @@
 
 namespace rastrum::raster {
 
-/// Colours of one block of 8 × 8 pixels after another. Each thread has its own.
+/// Colours of blocks of 8 × 8 pixels, for one thread.
 class SampledColors {
  public:
   SampledColors();
   SampledColors(SampledColors&&) noexcept;
   ~SampledColors();
 
-  /// Forgets what was found in another bin, which may be of another frame.
+  /// Forgets what was found in another bin, maybe of another frame.
   void begin();
-  /// `bx`, `by`: the block. Sets `nearest` to the largest key of each pixel and, where the frame
-  /// wants colours, `out` to the mean of the samples' premultiplied colours. Requires triangles,
-  /// points and lines.
+  /// Sets `nearest` to the largest key of each pixel of block (bx, by) and, where the frame wants
+  /// colours, `out` to the mean of the samples' premultiplied colours. Handles triangles, points
+  /// and lines only.
   void resolve(const BinContext& context, const SampledKeys& keys, int bx, int by,
                std::uint64_t* nearest, BlockColors& out);
-  /// Returns the pixels of `block`, which the piece covers at a sample, that its fragment test
-  /// keeps. The test is made where the primitive is shaded, so it says the same for every sample.
+  /// Returns the pixels of `block`, where the piece covers a sample, that its fragment test keeps.
+  /// Tests where the primitive is shaded, so all samples agree.
   [[nodiscard]] std::uint64_t test(const BinContext& context, const Piece& piece,
                                    const Block& block);
 
@@ -47,15 +46,15 @@ class SampledColors {
   void shade(const BinContext& context, const std::uint64_t* keys, std::uint64_t mask,
              const ShadingPoints* points, BlockColors& colors);
 
-  /// Colours in groups of 64. Group 0 is shaded at pixels' centres, each colour at its pixel's
-  /// place; the next groups are packed. The last group is 0, for samples that see nothing.
+  /// Colours in groups of 64. Group 0 is shaded at pixel centres, each colour in its pixel's place.
+  /// The next groups are packed. The last group is 0, for samples without a surface.
   BlockColors colors_[2 + kMaxSamples];
   alignas(64) std::uint64_t centre_keys_[64];
   SeenBySamples seen_;
   std::uint64_t centred_ = 0;  ///< pixels of group 0
   alignas(64) std::uint64_t packed_keys_[64];
   ShadingPoints packed_points_;
-  int packed_ = 0;  ///< in the last group
+  int packed_ = 0;  ///< in the last packed group
   int groups_ = 0;
   int bx_ = 0, by_ = 0;
   std::unique_ptr<Primitive[]> kept_;

@@ -76,7 +76,7 @@ SurfaceScene::SurfaceScene(const SceneView& s, const InstanceRuns* r, const Came
                            int height)
     : scene(s), runs(r), camera(c), lit(s, c, width, height), to_camera(world_to_camera(c)) {
   lit.by_place = true;
-  lit.colored = false;  // of colours nothing is asked here
+  lit.colored = false;  // nothing here asks for colours
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) camera_rows[i][j] = static_cast<float>(to_camera.m[i][j]);
   for (std::size_t i = 0; i < lit.draws.size(); ++i) {

@@ -19,7 +19,7 @@
 namespace rastrum::raster {
 namespace {
 
-/// Stores the numbers that a key alone tells: which primitive of which draw.
+/// Stores the numbers that a key alone has: its instance and primitive.
 void store_numbers(const FrameRequest& request, const FrameGeometry& frame,
                    const VisibleBlock& block, std::uint64_t touched) {
   const Targets& t = request.targets;
@@ -91,7 +91,6 @@ void store_point(const FrameRequest& request, const FrameGeometry& frame, const 
   store(t.scalars, [&] { return number_of(request.surface->scalar(frame, f)); });
 }
 
-/// Stores the values that targets of surfaces have where nothing is.
 void store_nothing(const FrameRequest& request, std::uint64_t where, int x0, int y0) {
   for_each_target([&](const auto& row) {
     const auto& target = request.targets.*row.image;
@@ -108,7 +107,6 @@ void store_nothing(const FrameRequest& request, std::uint64_t where, int x0, int
   });
 }
 
-/// The pixels of `seen` that see triangles.
 std::uint64_t of_triangles(const FrameRequest& request, const FrameGeometry& frame,
                            const VisibleBlock& block, std::uint64_t seen) {
   if (request.surface != nullptr && request.surface->only_meshes) return seen;
@@ -124,14 +122,13 @@ std::uint64_t of_triangles(const FrameRequest& request, const FrameGeometry& fra
   return triangles;
 }
 
-/// The triangles of a thread's last blocks.
 SeenPlanes& kept_planes() {
   static thread_local SeenPlanes planes;
   return planes;
 }
 
-/// Weights, places and numbers at the covered pixels of a block, which see triangles: as
-/// store_point has them.
+/// Weights, positions and numbers at the covered pixels of a block, all of triangles, with
+/// store_point's results.
 class TriangleStorer {
  public:
   TriangleStorer(const FrameRequest& request, const FrameGeometry& frame, const VisibleBlock& block,
@@ -160,7 +157,6 @@ class TriangleStorer {
   [[nodiscard]] std::size_t draw_of(std::size_t k) const {
     return static_cast<std::size_t>(seen_.draw[k] - frame_.draws.data());
   }
-  /// Whether two triangles are of one instance.
   [[nodiscard]] bool are_together(std::size_t a, std::size_t b) const {
     return seen_.draw[a] == seen_.draw[b] && seen_.part[a].copy == seen_.part[b].copy;
   }
@@ -222,8 +218,8 @@ class TriangleStorer {
   ByCorner shares_;
 };
 
-/// The triangles of a thread's last blocks, for normals that no shader has left. They are many, but
-/// made once: frames tell themselves apart by their numbers.
+/// A thread's triangles for normals that no shader has left. They are many, but made once a frame;
+/// frame numbers tell when to forget them.
 KeptTriangles& kept_triangles(const FrameGeometry& frame) {
   static thread_local struct {
     std::uint64_t frame = 0;
@@ -289,7 +285,7 @@ void store_surfaces(const FrameRequest& request, const FrameGeometry& frame,
     if (triangles.covered != 0) TriangleStorer(request, frame, triangles, *kernels).store();
     places &= ~triangles.covered;
   }
-  // The rest, and all of the base colours, one by one.
+  // The rest, and all base colours, one by one.
   SurfaceLocator locator(frame, request.samples, !t.albedo.empty());
   for (std::uint64_t m = t.albedo.empty() ? places : seen; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);

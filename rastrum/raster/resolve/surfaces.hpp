@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The images beside colour, depth and ids, made for a block from its keys.
 #pragma once
 
 #include <algorithm>
@@ -11,9 +10,8 @@
 
 namespace rastrum::raster {
 
-/// Stores those of a block's 64 values that are `touched`, and asks the cache for the lines of the
-/// block on the right, which mostly comes next: rows lie too far apart for the processor to foresee
-/// them.
+/// Stores the `touched` ones of a block's 64 values, and prefetches the lines of the block to the
+/// right, which mostly comes next: rows are too far apart for hardware prefetching.
 template <class T>
 void store_block(const ImageView<T>& target, const T* values, std::uint64_t touched, int x0,
                  int y0) {
@@ -33,8 +31,7 @@ void store_block(const ImageView<T>& target, const T* values, std::uint64_t touc
   }
 }
 
-/// Stores the targets that are asked for, at the pixels that are `touched`; normals by way of
-/// `block.lit`.
+/// Stores the wanted targets at the `touched` pixels; normals come from `block.lit`.
 void store_surfaces(const FrameRequest& request, const FrameGeometry& frame,
                     const VisibleBlock& block, std::uint64_t touched) noexcept;
 

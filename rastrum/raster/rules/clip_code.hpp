@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The clipper's code: of clip.cpp for the host, and in each translation unit for a device, where
-// few primitives need it, so that it stays a call there too.
+// The clipper's code. The host compiles it in clip.cpp, a device in each translation unit. It stays
+// a call there too, since few primitives need it.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace clip_detail {
 
 struct Corner {
   Vec4d clip;
-  const ProjectedVertex* original;  ///< null: made by the clipper, or without a float32 position
+  const ProjectedVertex* original;  ///< null: made by the clipper, or no float32 position
 };
 
 struct Polygon {
@@ -30,17 +30,16 @@ struct Polygon {
   Corner corners[kMaxPolygon];
 };
 
-/// Signed distance to a plane, as a linear form of the homogeneous position; ≥ 0 is inside.
+/// Signed distance to a plane in homogeneous space; ≥ 0 is inside.
 struct Plane {
   double x, y, z, w;
   [[nodiscard]] RASTRUM_HD double distance(const Corner& c) const {
     const double d = x * c.clip.x + y * c.clip.y + z * c.clip.z + w * c.clip.w;
-    // float32 projection is the authority on which vertices are inside.
+    // float32 projection decides which vertices are inside.
     return c.original != nullptr ? std::max(d, 0.0) : d;
   }
 };
 
-/// A new vertex on the way from a to b.
 RASTRUM_HD inline Corner at(const Corner& from, const Corner& to, double t) {
   const Vec4d &a = from.clip, &b = to.clip;
   return {
@@ -60,8 +59,8 @@ RASTRUM_HD inline void cut(Polygon& polygon, const Plane& plane) {
     any_outside |= d[i] < 0;
   }
   if (!any_outside) return;
-  // Rounding may bend a polygon of huge coordinates so that a plane crosses it more than twice;
-  // what then has too many corners has no shape worth drawing.
+  // Rounding may bend a huge polygon so that a plane crosses it more than twice. With too many
+  // corners it is not worth drawing.
   Polygon kept;
   const auto keep = [&kept](const Corner& c) {
     if (kept.size < kMaxPolygon) kept.corners[kept.size] = c;
@@ -78,9 +77,9 @@ RASTRUM_HD inline void cut(Polygon& polygon, const Plane& plane) {
   polygon = kept;
 }
 
-/// The near plane and the guard band. px · w = x · hw + w · hw and py · w = w · hh − y · hh where
-/// w > 0. Opposite guard planes add up to w · (max − min) ≥ 0, so they also remove what lies behind
-/// the eye of a caller's own projection.
+/// Where w > 0, px · w = x · hw + w · hw and py · w = w · hh − y · hh. Opposite guard planes add up
+/// to w · (max − min) ≥ 0, so they also remove what lies behind the eye of a caller's own
+/// projection.
 RASTRUM_HD inline std::array<Plane, 5> planes(Viewport viewport) {
   const double hw = viewport.half_width;
   const double hh = viewport.half_height;
@@ -100,7 +99,7 @@ RASTRUM_HD inline ProjectedVertex project_corner(const Corner& c, Viewport v) {
   if (c.original != nullptr) return *c.original;
   const double x = c.clip.x / c.clip.w * v.half_width + v.half_width;
   const double y = v.half_height - c.clip.y / c.clip.w * v.half_height;
-  // Far beyond a finite far plane float32 depth may overflow; any depth ≤ 0 is drawn as 0.
+  // Float32 depth may overflow far beyond a finite far plane; any depth ≤ 0 is drawn as 0.
   const double depth = std::clamp(c.clip.z / c.clip.w, -1e30, 1.0);
   return {snap_in_guard_band(x), snap_in_guard_band(y), static_cast<float>(depth), 0.0F};
 }
@@ -135,8 +134,7 @@ RASTRUM_CLIP bool clip_line(const Vec4d (&clip)[2], ProjectedVertex (&projected)
     return clip_detail::Corner{clip[i], projected[i].x_fx8 != kNeedsClip ? &projected[i] : nullptr};
   };
   const clip_detail::Corner a = corner(0), b = corner(1);
-  // How far from a the line stays inside of all planes, and how far from b: each is measured from
-  // the inside end of its plane.
+  // How much of the line is inside, measured from a and from b. A plane counts from its inside end.
   double from_a = 1, from_b = 1;
   for (const clip_detail::Plane& plane : clip_detail::planes(viewport)) {
     const double da = plane.distance(a), db = plane.distance(b);
@@ -166,8 +164,8 @@ RASTRUM_CLIP bool clip_point(const Vec4d& clip, Viewport viewport,
 }
 
 RASTRUM_CLIP double orientation(const Vec4d (&c)[3]) noexcept {
-  // The determinant of the three (x, y, w): the volume of the triangle with the eye. Scaled to keep
-  // products of coordinates near FLT_MAX / 16 far from overflow.
+  // The volume of the triangle with the eye. Scaling keeps products of coordinates near FLT_MAX /
+  // 16 far from overflow.
   double m[3][3];
   for (int i = 0; i < 3; ++i) {
     const double scale = std::max({std::abs(c[i].x), std::abs(c[i].y), std::abs(c[i].w), 1e-300});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Colours of a block and their way to 8 bits.
+// Colours of a block and their conversion to 8 bits.
 #pragma once
 
 #include <cmath>
@@ -12,12 +12,12 @@
 
 namespace rastrum::raster {
 
-/// Colours of a block, one plane a channel: element 8 · row + column. Premultiplied.
+/// Premultiplied colours of a block, one plane a channel: element 8 · row + column.
 struct alignas(64) BlockColors {
   float r[64], g[64], b[64], a[64];
 
   [[nodiscard]] Vec4 at(int i) const { return {r[i], g[i], b[i], a[i]}; }
-  /// Sets element i; returns whether `c` is opaque.
+  /// Returns whether `c` is opaque.
   bool set(int i, Vec4 c) {
     r[i] = c.x;
     g[i] = c.y;
@@ -27,14 +27,12 @@ struct alignas(64) BlockColors {
   }
 };
 
-/// The place of a block's 8-bit colours: its first pixel, and the distance from one row to the
-/// next.
 struct BlockPixels {
   Rgba8* data = nullptr;
   std::ptrdiff_t stride = 0;
 };
 
-/// [0, 1] to 0 … 255, nearest, ties to even; NaN becomes 0.
+/// Ties to even; NaN becomes 0.
 RASTRUM_HD inline std::uint8_t quantize(float c) {
   const float clamped = c > 0 ? (c < 1 ? c : 1.0F) : 0.0F;
   return static_cast<std::uint8_t>(std::nearbyint(clamped * 255.0F));
@@ -58,32 +56,30 @@ RASTRUM_HD inline Vec4 straight_from_rgba8(Rgba8 c) {
           static_cast<float>(c.b) / 255.0F, static_cast<float>(c.a) / 255.0F};
 }
 
-/// Premultiplied linear light to premultiplied display values.
 RASTRUM_HD inline Vec4 display_from_linear(Vec4 premultiplied) {
   const Vec4 c = straight_from_premultiplied(premultiplied);
   return {srgb_from_linear(c.x) * c.w, srgb_from_linear(c.y) * c.w, srgb_from_linear(c.z) * c.w,
           c.w};
 }
 
-/// The same to 8 bits, without the way through premultiplied ones.
 RASTRUM_HD inline Rgba8 linear_to_straight_rgba8(Vec4 premultiplied) {
   const Vec4 c = straight_from_premultiplied(premultiplied);
   return {quantize(srgb_from_linear(c.x)), quantize(srgb_from_linear(c.y)),
           quantize(srgb_from_linear(c.z)), quantize(c.w)};
 }
 
-/// The background that the colours of a block are drawn over.
+/// The background of a block's colours.
 struct Backdrop {
-  Vec4 color{};         ///< premultiplied; in linear light where `linear`
+  Vec4 color{};         ///< premultiplied; in linear light if `linear`
   bool linear = false;  ///< the block's colours are in linear light
-  Rgba8 empty{};        ///< of pixels that nothing covers
+  Rgba8 empty{};        ///< where nothing covers the pixel
 
-  /// The backdrop of a display value with straight alpha, for colours that are no linear light.
+  /// `straight`: a display value with straight alpha. For colours that are not linear light.
   [[nodiscard]] RASTRUM_HD static Backdrop of(Vec4 straight) {
     const Vec4 color = premultiplied_from_straight(straight);
     return {color, false, to_straight_rgba8(color)};
   }
-  /// A covered pixel as it is written.
+  /// Premultiplied display value of a covered pixel.
   [[nodiscard]] RASTRUM_HD Vec4 color_over(Vec4 front) const {
     const Vec4 c = over(front);
     return linear ? display_from_linear(c) : c;
@@ -92,7 +88,7 @@ struct Backdrop {
     const Vec4 c = over(front);
     return linear ? linear_to_straight_rgba8(c) : to_straight_rgba8(c);
   }
-  /// A covered pixel, premultiplied.
+  /// Premultiplied, in the light of the block's colours.
   [[nodiscard]] RASTRUM_HD Vec4 over(Vec4 front) const { return front + color * (1 - front.w); }
 };
 

@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Exact coverage: the one interval of a row and the one mask of a block. Every rasterizer covers
-// through these two, or through their SIMD form (cover/cover_simd.cpp), which tests hold equal to
-// them. edge_lanes-inl.hpp has the edge functions in lanes.
-// Triangles, lines and points are all the common inside of a few edge functions; of a round point
-// that is the square about it.
+// Exact coverage: the span of a row and the mask of a block. Every rasterizer uses these two or
+// their SIMD form (cover/cover_simd.cpp), which tests hold equal. Triangles, lines and points are
+// each the common inside of a few edge functions. A round point's are those of its square.
 //
-// The arithmetic. An edge from a to b has the function E(p) = (b.x − a.x)(p.y − a.y) −
-// (b.y − a.y)(p.x − a.x), positive inside. At sample (i, j), p = 256 (i, j) + 128, so a step of one
-// pixel changes E by a multiple of 256 and
+// An edge from a to b has the function E(p) = (b.x − a.x)(p.y − a.y) − (b.y − a.y)(p.x − a.x),
+// positive inside. At sample (i, j), p = 256 (i, j) + 128, so a step of one pixel changes E by a
+// multiple of 256 and
 //     E ≥ 0  ⇔  ⌊E₀₀ / 256⌋ + A i + B j ≥ 0,   A = a.y − b.y, B = b.x − a.x.
-// The top-left rule asks for E > 0 on the other edges, that is E − 1 ≥ 0: the −1 goes under the
-// floor. Differences inside the guard band are at most 98,304 px = 3 · 2^23 / 256 px, so |A|, |B| <
-// 2^25 and |E| < 2^51 fit int64. Inside a block (steps 0 … 7) A i + B j stays below 2^29; a base
-// clamped to ±2^30 therefore keeps the sign of every sum and never overflows int32.
+// The top-left rule wants E > 0 on other edges, that is E − 1 ≥ 0: the −1 goes under the floor. In
+// the guard band differences are at most 98,304 px = 3 · 2^23 / 256 px, so |A|, |B| < 2^25 and |E|
+// < 2^51 fit int64. In a block (steps 0 … 7) A i + B j stays below 2^29, so a base clamped to ±2^30
+// keeps the sign of every sum and never overflows int32.
 #pragma once
 
 #include <cmath>
@@ -24,14 +22,13 @@
 
 namespace rastrum::raster {
 
-/// One edge for integer stepping over pixels: value(i, j) = base + a · i + b · j ≥ 0 is inside.
+/// value(i, j) = base + a · i + b · j ≥ 0 is inside.
 struct Edge {
   std::int64_t base;  ///< at pixel (0, 0) of the image
   std::int32_t a, b;  ///< change per pixel in x and y
 };
 
-/// E of the edge (a, b) at a place (dx, dy) from where the edge begins, n.8, less the 1 of the
-/// top-left rule: ≥ 0 is inside.
+/// E of the edge (a, b) at (dx, dy) from its begin, n.8, less the top-left rule's 1.
 template <class Int>
 [[nodiscard]] RASTRUM_HD constexpr Int edge_value(Int a, Int b, Int dx, Int dy) {
   const bool top_left = a > 0 || (a == 0 && b > 0);
@@ -54,17 +51,17 @@ RASTRUM_HD constexpr std::int64_t floor_div(std::int64_t n, std::int64_t d) {
 
 /// A line without its ends: at pixel m of the major axis it covers the pixels [n, n + width) of the
 /// minor one, n = ⌊(base + rise · m) / run⌋. A line of slope −1 to 1 meets the diamond |x − x_f| +
-/// |y − y_f| < 1/2 of a pixel exactly if it passes between its upper and its lower corner, so its
-/// minor coordinate at the sample of m decides. Where it passes through a corner, the ends moved by
-/// −(ε, ε²), as OpenGL has it, put it on one side: it is the shift that makes the top-left rule of
-/// triangles, too. Wide lines are moved by −(width − 1) / 2 first. |rise| ≤ run < 2^25.
+/// |y − y_f| < 1/2 of a pixel exactly if it passes between its upper and its lower corner, so the
+/// minor coordinate at the sample of m decides. At a corner OpenGL's shift of the ends by −(ε, ε²)
+/// decides, which also makes the top-left rule of triangles. Wide lines are first moved by −(width
+/// − 1) / 2. |rise| ≤ run < 2^25.
 struct LineBand {
   std::int64_t base;
   std::int32_t rise, run, width;
   bool x_major;
 
   RASTRUM_HD std::int64_t minor(std::int64_t m) const { return floor_div(base + rise * m, run); }
-  /// How far it has been moved along the minor axis, n.8.
+  /// Its shift along the minor axis, n.8.
   RASTRUM_HD std::int32_t shift() const { return (width - 1) * kHalfPixel; }
 };
 
@@ -79,8 +76,8 @@ RASTRUM_HD inline LineBand line_band(const Piece& p) {
     band.rise = -band.rise;
   }
   band.width = static_cast<std::int32_t>(p.flags >> kLineWidthShift);
-  // In a tie the shift moves a y-major line to the left; an x-major one by ε · rise / run − ε², so
-  // down if it falls to the right and up if not. The −1 goes under the floor, as in edge_function.
+  // In a tie the shift moves a y-major line left, and an x-major one by ε · rise / run − ε²: down
+  // if it falls to the right, else up. The −1 goes under the floor, as in edge_function.
   const int tie = !band.x_major || band.rise <= 0 ? 1 : 0;
   const std::int64_t major = band.x_major ? p.x[0] : p.y[0];
   const std::int64_t minor = (band.x_major ? p.y[0] : p.x[0]) - band.shift();
@@ -88,9 +85,8 @@ RASTRUM_HD inline LineBand line_band(const Piece& p) {
   return band;
 }
 
-/// A point is the square of its size (n.8, px) under the top-left rule: the samples in
-/// [x − size / 2, x + size / 2) × [y − size / 2, y + size / 2). Pixel i is in from 2 (256 i + 128)
-/// ≥ 2 v ∓ size on: ⌈(2 v ∓ size − 256) / 512⌉.
+/// The samples in the point's square [x − size / 2, x + size / 2) × [y − size / 2, y + size / 2).
+/// Pixel i is in from 2 (256 i + 128) ≥ 2 v ∓ size on: ⌈(2 v ∓ size − 256) / 512⌉.
 RASTRUM_HD inline Rect point_square(std::int32_t x_fx8, std::int32_t y_fx8, std::int32_t size_fx8) {
   const auto first = [](std::int32_t twice) {
     return (twice - kSubpixels + 2 * kSubpixels - 1) >> (kSubpixelBits + 1);
@@ -99,7 +95,7 @@ RASTRUM_HD inline Rect point_square(std::int32_t x_fx8, std::int32_t y_fx8, std:
           first(2 * y_fx8 + size_fx8)};
 }
 
-/// Round points below this size, n.8 px, are square: a disc of less than √2 px may hold no sample.
+/// Smaller round points (n.8 px) are square: a disc narrower than √2 px may miss all samples.
 inline constexpr std::int32_t kLeastRound = 3 * kSubpixels / 2;
 
 /// Pixels [begin, end) of a row.
@@ -107,20 +103,20 @@ struct Span {
   int begin, end;
 };
 
-/// The pixels of row y in the disc of a round point, in [x0, x1): the samples within it, and of
-/// those on its rim the left half with the top, as of the square. In 1/512 px, where all is whole:
-/// u² + v² against size², u and v from the centre to the sample.
+/// The pixels of row y in the disc of a round point, in [x0, x1). On the rim the left half and the
+/// top are in, as for the square. In 1/512 px all numbers are whole: u² + v² against size², (u, v)
+/// from the centre to the sample.
 RASTRUM_HD inline Span disc_span(std::int32_t x_fx8, std::int32_t y_fx8, std::int32_t size_fx8,
                                  int y, int x0, int x1) {
   const std::int64_t v = 2 * (std::int64_t{y} * kSubpixels + kHalfPixel - y_fx8);
   const std::int64_t room = std::int64_t{size_fx8} * size_fx8 - v * v;
   if (room < 0) return {x0, x0};
-  // Below 2^41, so its root is never rounded up to a whole number.
+  // Below 2^41, so the root is never rounded up to a whole number.
   const auto root = static_cast<std::int64_t>(std::sqrt(static_cast<double>(room)));
   const bool left = room > 0 || v < 0;    // the sample at −root is in
-  const bool right = root * root < room;  // that at root, too
+  const bool right = root * root < room;  // so is that at root
   if (!left) return {x0, x0};
-  // The first and last u that are in; where both are 0 it is the top, or a row of one sample.
+  // The first and last u that are in. Where both are 0 it is the top, or a row of one sample.
   const std::int64_t first = -root, last = right || root == 0 ? root : root - 1;
   const std::int64_t centre = 2 * std::int64_t{x_fx8} - kSubpixels;
   const std::int64_t begin = -((-(centre + first)) >> (kSubpixelBits + 1));
@@ -131,8 +127,7 @@ RASTRUM_HD inline Span disc_span(std::int32_t x_fx8, std::int32_t y_fx8, std::in
   return {cut(begin), cut(end > begin ? end : begin)};
 }
 
-/// The edge functions whose common inside a piece is: a triangle's three; the two sides of a line
-/// and its ends; the four sides of a point.
+/// A triangle's three, a line's two sides and two ends, a point's four sides.
 struct Edges {
   Edge edge[4];
   int count;
@@ -155,7 +150,7 @@ RASTRUM_HD inline Edges edges_of(const Piece& p) {
   return {{{below, l.run, -l.rise}, {above, -l.run, l.rise}, {-first, 0, 1}, {last, 0, -1}}, 4};
 }
 
-/// The pixels that may be covered, cut to `view`. May be empty.
+/// May be empty.
 RASTRUM_HD inline Rect piece_bounds(const Piece& p, Rect view) {
   if (has_corners(p)) return sample_bounds(p.x, p.y, view);
   Rect box;
@@ -173,7 +168,6 @@ RASTRUM_HD inline Rect piece_bounds(const Piece& p, Rect view) {
           box.x1 < view.x1 ? box.x1 : view.x1, box.y1 < view.y1 ? box.y1 : view.y1};
 }
 
-/// Whether the centre of pixel (x, y) is inside of the edges.
 [[nodiscard]] RASTRUM_HD inline bool covers_centre(const Edges& edges, int x, int y) {
   bool inside = true;
   for (int k = 0; k < edges.count; ++k) {
@@ -183,7 +177,7 @@ RASTRUM_HD inline Rect piece_bounds(const Piece& p, Rect view) {
   return inside;
 }
 
-/// Whether the rectangle may hold an inside sample: none lies beyond any one edge.
+/// No single edge excludes the whole rectangle.
 RASTRUM_HD inline bool may_touch(const Edges& edges, Rect r) {
   for (int i = 0; i < edges.count; ++i) {
     const Edge& e = edges.edge[i];
@@ -195,7 +189,7 @@ RASTRUM_HD inline bool may_touch(const Edges& edges, Rect r) {
   return true;
 }
 
-/// The pixels of row y that the piece covers, within [x0, x1): exact, possibly empty.
+/// Exact; may be empty.
 RASTRUM_HD inline Span row_span(const Piece& p, int y, int x0, int x1) {
   std::int64_t begin = x0;
   std::int64_t end = x1;
@@ -220,8 +214,8 @@ RASTRUM_HD inline Span row_span(const Piece& p, int y, int x0, int x1) {
              : span;
 }
 
-/// The samples of block (bx, by) inside of all edges; bit 8 · row + column. Only those of `within`
-/// are looked at: columns [x0, x1) and rows [y0, y1) of the block.
+/// The samples of block (bx, by) inside of all edges, bit 8 · row + column, cut to columns [x0, x1)
+/// and rows [y0, y1) of the block.
 RASTRUM_HD inline std::uint64_t cover_8x8(const Edges& edges, int bx, int by,
                                           Rect within = {0, 0, kBlockSize, kBlockSize}) {
   constexpr std::int64_t kClamp = std::int64_t{1} << 30;
@@ -242,7 +236,6 @@ RASTRUM_HD inline std::uint64_t cover_8x8(const Edges& edges, int bx, int by,
   return mask;
 }
 
-/// The samples of block (bx, by) in the disc of a round point.
 RASTRUM_HD inline std::uint64_t cover_disc(const Piece& p, int bx, int by) {
   std::uint64_t mask = 0;
   const int x0 = bx * kBlockSize;
@@ -254,7 +247,7 @@ RASTRUM_HD inline std::uint64_t cover_disc(const Piece& p, int bx, int by) {
   return mask;
 }
 
-/// The samples of block (bx, by) that a quadric's piece covers, as far as `within` of it.
+/// The samples of block (bx, by) that a quadric's piece covers, cut to the pixels `within`.
 RASTRUM_HD inline std::uint64_t cover_quadric(const Piece& p, int bx, int by, Rect within) {
   std::uint64_t mask = 0;
   for (int i = 0; i < 64; ++i) {
@@ -265,7 +258,6 @@ RASTRUM_HD inline std::uint64_t cover_quadric(const Piece& p, int bx, int by, Re
   return mask;
 }
 
-/// The samples of block (bx, by) that the piece covers.
 RASTRUM_HD inline std::uint64_t cover_8x8(const Piece& p, int bx, int by) {
   if (is_quadric(p)) {
     const int x0 = bx * kBlockSize, y0 = by * kBlockSize;
@@ -275,7 +267,7 @@ RASTRUM_HD inline std::uint64_t cover_8x8(const Piece& p, int bx, int by) {
   return is_round(p) ? cover_disc(p, bx, by) : cover_8x8(edges_of(p), bx, by);
 }
 
-/// Calls f(x, y) for the pixels of `view` whose samples the piece covers, row by row.
+/// Calls f(x, y) row by row.
 template <class F>
 RASTRUM_HD inline void for_each_covered(const Piece& p, Rect view, F&& f) {
   const Rect box = piece_bounds(p, view);
@@ -286,8 +278,8 @@ RASTRUM_HD inline void for_each_covered(const Piece& p, Rect view, F&& f) {
   }
 }
 
-/// Calls add(bx, by, mask) for every block of `view` that the piece covers, row by row; those of
-/// which skip(bx, by) says so are left out. `box`: piece_bounds, not empty.
+/// Calls add(bx, by, mask) for every block of `view` that the piece covers, row by row, unless
+/// skip(bx, by). `box`: piece_bounds, not empty.
 template <class Skip, class Add>
 RASTRUM_HD inline void cover_blocks(const Piece& p, Rect box, Rect view, Skip&& skip, Add&& add) {
   const bool quadric = is_quadric(p);

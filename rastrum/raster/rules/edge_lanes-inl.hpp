@@ -14,7 +14,7 @@ HWY_BEFORE_NAMESPACE();
 namespace rastrum::raster::HWY_NAMESPACE {
 namespace {  // each source has its own
 
-/// `V`: vectors of int32, in which no product overflows.
+/// `V`: vectors of int32. No product may overflow.
 template <class V>
 HWY_INLINE V edge_lanes(V a, V b, V dx, V dy) {
   namespace hn = hwy::HWY_NAMESPACE;

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rasterizes scalar fields with a sign: circles, quadrics, distance fields (paper 1, section 4.4).
-// A field is expanded to the 8 × 8 blocks of its box and masked to the samples where it is not
-// negative; a triangle is the field whose value is the smallest of its edge functions.
-//
-// There is no setup and no piece: the caller's function says what is inside, at pixel centres, and
-// what it computes is as exact as it is.
+// Rasterizes signed scalar fields: circles, quadrics, distance fields (paper 1, section 4.4).
+// Expands a field to the 8 × 8 blocks of its box and masks them to the samples where it is not
+// negative. A triangle is the field of its smallest edge function. There is no setup and no piece:
+// the caller's function decides at pixel centres.
 #pragma once
 
 #include <cstddef>
@@ -15,13 +13,12 @@
 
 namespace rastrum::raster {
 
-/// A pixel that a field covers.
 struct FieldPixel {
   std::uint32_t field;
   std::uint16_t x, y;
 };
 
-/// The samples of the blocks that a box touches, 64 a block, as numbers.
+/// The samples of the blocks that a box touches, numbered, 64 a block.
 class BlockSamples {
  public:
   RASTRUM_HD BlockSamples(Rect box, Rect view)
@@ -54,11 +51,11 @@ class BlockSamples {
   int bx_ = 0, by_ = 0, columns_ = 0, rows_ = 0;
 };
 
-/// The pixels of `view` that the fields cover, field by field: those inside of box(field) → Rect
-/// with value(field, x, y) ≥ 0 at (x + ½, y + ½). A NaN is outside. `view`: non-negative, at most
-/// 65,536 px each way; fewer than 2³² fields. Both functions are called by several threads.
-/// Work O(fields + samples of the boxes' blocks), span O(log fields + kBlock). Memory: the result,
-/// 8 bytes a field and 8 a block.
+/// The pixels of `view` covered by the fields, field by field: inside of box(field) → Rect, with
+/// value(field, x, y) ≥ 0 at (x + ½, y + ½). A NaN is outside. `view`: non-negative, at most 65,536
+/// px each way; fewer than 2³² fields. Several threads call both functions. Work O(fields + samples
+/// of the boxes' blocks), span O(log fields + kBlock). Memory: the result, 8 bytes a field and 8 a
+/// block.
 template <class Exec, parallel::Readable Fields, class Box, class Value>
 [[nodiscard]] parallel::Buffer<FieldPixel> field_pixels(Exec& exec, const Fields& fields, Rect view,
                                                         const Box& box, const Value& value) {

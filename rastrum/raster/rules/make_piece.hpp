@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Triangle setup: from three snapped vertices to a piece. The scalar form is the reference; the
-// SIMD leaf (setup_simd.cpp) does the same float64 operations on several triangles at once.
+// Triangle setup: three snapped vertices to a piece. This scalar form is the reference;
+// setup_simd.cpp does the same float64 operations on several triangles at once.
 #pragma once
 
 #include <bit>
@@ -13,11 +13,10 @@
 
 namespace rastrum::raster {
 
-/// Why a triangle made no piece, or that it did.
 enum class SetupResult : std::uint8_t { drawn, culled };
 
-/// Twice the signed area in (1/256 px)²; negative for a counter-clockwise (front-facing) triangle,
-/// because y points down. Differences need 25 bits and a sign, so the result is below 2^51.
+/// In (1/256 px)². Negative for a counter-clockwise (front-facing) triangle, because y points down.
+/// Differences need 25 bits and a sign, so the result is below 2^51.
 RASTRUM_HD inline std::int64_t twice_area(const ProjectedVertex& a, const ProjectedVertex& b,
                                           const ProjectedVertex& c) {
   const std::int64_t dx1 = b.x_fx8 - a.x_fx8;
@@ -31,7 +30,7 @@ RASTRUM_HD inline bool is_culled(std::int64_t area, Cull cull) {
   return area == 0 || (cull == Cull::back && area > 0) || (cull == Cull::front && area < 0);
 }
 
-/// The piece's corners in its winding. `area` is not 0.
+/// `area` is not 0.
 RASTRUM_HD inline void set_corners(const ProjectedVertex& a, const ProjectedVertex& b,
                                    const ProjectedVertex& c, std::int64_t area, Piece& piece) {
   const ProjectedVertex& second = area > 0 ? b : c;
@@ -44,8 +43,8 @@ RASTRUM_HD inline void set_corners(const ProjectedVertex& a, const ProjectedVert
   piece.y[2] = third.y_fx8;
 }
 
-/// The plane through the three (x, y, depth): every product and difference of positions is exact in
-/// float64, so swapping b and c changes the signs of numerator and denominator and nothing else.
+/// Every product and difference of positions is exact in float64, so swapping b and c only changes
+/// the signs of numerator and denominator.
 RASTRUM_HD inline void set_depth_plane(const ProjectedVertex& a, const ProjectedVertex& b,
                                        const ProjectedVertex& c, std::int64_t area, Piece& piece) {
   const double dx1 = b.x_fx8 - a.x_fx8;
@@ -60,8 +59,8 @@ RASTRUM_HD inline void set_depth_plane(const ProjectedVertex& a, const Projected
   piece.zy = static_cast<float>((dz2 * dx1 - dz1 * dx2) / det * kSubpixels);
 }
 
-/// Fills `piece` unless the triangle is culled: no area, facing away, or no sample of `view` inside
-/// its box. Vertices must be inside the guard band. `reach`: as in sample_bounds.
+/// Fills `piece` unless the triangle is culled: no area, facing away, or no sample of `view` in its
+/// box. Vertices must be in the guard band. `reach`: as in sample_bounds.
 RASTRUM_HD inline SetupResult make_piece(const ProjectedVertex& a, const ProjectedVertex& b,
                                          const ProjectedVertex& c, std::uint64_t id,
                                          std::uint32_t flags, Cull cull, Rect view, Piece& piece,
@@ -76,8 +75,8 @@ RASTRUM_HD inline SetupResult make_piece(const ProjectedVertex& a, const Project
   return SetupResult::drawn;
 }
 
-/// Moves the piece's depth by a constant and by `slope` times its steepest change per px along an
-/// axis (GL's factor), both in units of reversed depth.
+/// Adds a constant and `slope` times the steepest change per px along an axis (GL's factor), both
+/// in units of reversed depth.
 RASTRUM_HD inline void add_depth_bias(Piece& p, float constant, float slope) {
   if (constant == 0 && slope == 0) return;
   const double zx = p.zx < 0 ? -p.zx : p.zx;
@@ -89,8 +88,8 @@ RASTRUM_HD inline void add_depth_bias(Piece& p, float constant, float slope) {
   p.z0 = static_cast<float>(z0 > -1e30 ? (z0 < 1e30 ? z0 : 1e30) : -1e30);
 }
 
-/// Depth of the sample of pixel (x, y), in [+0, 1], of a piece that is no quadric: what setup may
-/// ask for without a call.
+/// Depth at pixel (x, y), in [+0, 1], of a piece that is no quadric. Setup can use it without a
+/// call.
 RASTRUM_HD inline float plane_depth_at(const Piece& p, int x, int y) {
   constexpr float kPxPerSubpixel = 1.0F / kSubpixels;
   const float x0 = static_cast<float>(p.x[0]) * kPxPerSubpixel;
@@ -98,18 +97,18 @@ RASTRUM_HD inline float plane_depth_at(const Piece& p, int x, int y) {
   const float dx = (static_cast<float>(x) + 0.5F) - x0;
   const float dy = (static_cast<float>(y) + 0.5F) - y0;
   const float d = p.z0 + p.zx * dx + p.zy * dy;
-  // Comparisons that turn −0 and NaN into +0.
+  // Turns −0 and NaN into +0.
   const float at_least_0 = d > 0 ? d : 0.0F;
   return at_least_0 < 1 ? at_least_0 : 1.0F;
 }
-/// The same of any piece.
+/// The same for any piece.
 RASTRUM_HD inline float depth_at(const Piece& p, int x, int y) {
   return is_quadric(p) ? sample_quadric(p, x, y).depth : plane_depth_at(p, x, y);
 }
 
-/// The largest depth of any sample of pixels [x0, x1) × [y0, y1): depth_at the corner that the
-/// plane's slopes choose. Rounding keeps the order of exact results, so every operation of depth_at
-/// is monotone in x and in y, and no other sample is nearer. Requires finite slopes.
+/// The largest depth at any sample of the rectangle, at the corner that the slopes choose. Rounding
+/// keeps order, so every operation is monotone in x and in y, and no other sample is nearer.
+/// Requires finite slopes.
 RASTRUM_HD inline float highest_depth(const Piece& p, Rect r) {
   if (is_quadric(p)) return quadric_of(p).highest;
   return plane_depth_at(p, p.zx > 0 ? r.x1 - 1 : r.x0, p.zy > 0 ? r.y1 - 1 : r.y0);
@@ -118,7 +117,7 @@ RASTRUM_HD inline float lowest_depth(const Piece& p, Rect r) {
   if (is_quadric(p)) return quadric_of(p).lowest;
   return plane_depth_at(p, p.zx > 0 ? r.x0 : r.x1 - 1, p.zy > 0 ? r.y0 : r.y1 - 1);
 }
-/// Slopes that overflow make NaNs at samples level with vertex 0, for which no bound holds.
+/// Slopes that overflow make NaNs at samples level with vertex 0, so no bound holds.
 RASTRUM_HD inline bool has_depth_bounds(const Piece& p) {
   return is_quadric(p) || (p.zx - p.zx == 0 && p.zy - p.zy == 0);
 }

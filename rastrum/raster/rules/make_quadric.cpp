@@ -32,11 +32,11 @@ QuadricPart& add_part(Quadric& q, const scalar_wide::WidePart& p) {
 void add_ball(Quadric& q, const scalar_wide::WideRays& rays, const WideBall& ball, double reach,
               bool asks_eye) {
   QuadricPart& part = add_part(q, scalar_wide::ball_part(rays, ball, reach));
-  // The eye's other side.
+  // Cuts off what is behind the eye.
   if (asks_eye) add_limit(part, scalar_wide::limit_of(scalar_wide::w_of(rays), reach).limit);
 }
 
-/// Returns whether it is not seen edge-on.
+/// False: seen edge-on.
 bool add_disc(Quadric& q, const scalar_wide::WideRays& rays, const WideBall& ball, Vec3d normal,
               double reach, bool asks_eye) {
   add_ball(q, rays, ball, reach, asks_eye);
@@ -44,7 +44,7 @@ bool add_disc(Quadric& q, const scalar_wide::WideRays& rays, const WideBall& bal
   const auto g = scalar_wide::along(scalar_wide::from(rays, ball.centre), normal);
   scalar_wide::FoundLimit found = scalar_wide::limit_of(g * (1 / ball.radius), reach);
   add_limit(part, found.limit);
-  // Its exact negative, so that both are at one depth.
+  // The exact negative, so that both have one depth.
   found.limit.is_least = !found.limit.is_least;
   add_limit(part, found.limit);
   return found.crosses;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Setup of points and lines, beside that of triangles (make_piece.hpp).
 //
-// Lines follow OpenGL's diamond-exit rule (OpenGL 4.6, 14.5.1) with y down as in our images: with
-// both ends moved by −(ε, ε²), a line produces the pixels f whose open diamond
-// |x − x_f| + |y − y_f| < 1/2 it leaves before its second end. So a polyline draws the pixel at a
-// shared end once, and a line that leaves no diamond draws nothing. Which pixels the endless line
-// takes is line_band's (coverage.hpp); here is where they begin and end. Wide lines are `width`
-// pixels across the minor axis everywhere. Exact: integers and a rule for every tie.
+// Lines follow OpenGL's diamond-exit rule (OpenGL 4.6, 14.5.1) with y down. With both ends moved by
+// −(ε, ε²), a line produces the pixels f whose open diamond |x − x_f| + |y − y_f| < 1/2 it leaves
+// before its second end. So a polyline draws the pixel at a shared end once, and a line that leaves
+// no diamond draws nothing. line_band (coverage.hpp) has the pixels of the endless line; this file
+// finds where they begin and end. A wide line is `width` pixels across the minor axis everywhere.
+// All is exact: integers, and a rule for every tie.
 #pragma once
 
 #include <cmath>
@@ -18,14 +18,13 @@
 
 namespace rastrum::raster {
 
-/// The first pixel of the major axis, in the direction of growing coordinates, on whose far side
-/// the line's end `i` lies: a line forward covers [that of end 0, that of end 1), one backward the
-/// reverse.
+/// The first pixel along the major axis, in growing coordinates, on whose far side end `i` lies. A
+/// forward line covers [pixel of end 0, pixel of end 1), a backward one the reverse.
 RASTRUM_HD inline std::int32_t pixel_at_end(const Piece& p, const LineBand& band, int i) {
   const bool forward = (band.x_major ? p.x[1] - p.x[0] : p.y[1] - p.y[0]) > 0;
   const std::int32_t major = band.x_major ? p.x[i] : p.y[i];
   const std::int32_t minor = (band.x_major ? p.y[i] : p.x[i]) - band.shift();
-  // The end moved by −ε lies in pixel m; elsewhere it is clear on which side of a diamond it lies.
+  // The end moved by −ε lies in pixel m, and clearly beside all other diamonds.
   const std::int32_t m = (major - 1) >> kSubpixelBits;
   const std::int32_t along = major - (m * kSubpixels + kHalfPixel);
   const auto across = static_cast<std::int32_t>(minor - (band.minor(m) * kSubpixels + kHalfPixel));
@@ -37,8 +36,8 @@ RASTRUM_HD inline std::int32_t pixel_at_end(const Piece& p, const LineBand& band
   return forward == left_behind ? m + 1 : m;
 }
 
-/// Fills `piece` unless no sample of `view` can be covered. The ends must be inside the guard band.
-/// `width` in whole px, at least 1.
+/// Fills `piece` unless it can cover no sample of `view`. The ends must be inside the guard band.
+/// `width`: whole px, at least 1.
 RASTRUM_HD inline SetupResult make_line(const ProjectedVertex& a, const ProjectedVertex& b,
                                         std::uint64_t id, std::uint32_t flags, std::uint32_t width,
                                         Rect view, Piece& piece) {
@@ -54,7 +53,7 @@ RASTRUM_HD inline SetupResult make_line(const ProjectedVertex& a, const Projecte
   piece.y[2] = at_a < at_b ? at_b : at_a;
   if (at_a == at_b || piece_bounds(piece, view).empty()) return SetupResult::culled;
 
-  // Depth changes along the major axis alone, so that a wide line has one depth across.
+  // Depth changes along the major axis alone, so a wide line has one depth across.
   const double change = (static_cast<double>(b.depth) - static_cast<double>(a.depth)) /
                         (band.x_major ? b.x_fx8 - a.x_fx8 : b.y_fx8 - a.y_fx8) * kSubpixels;
   piece.z0 = a.depth;
@@ -64,8 +63,8 @@ RASTRUM_HD inline SetupResult make_line(const ProjectedVertex& a, const Projecte
   return SetupResult::drawn;
 }
 
-/// Fills `piece` unless the square of `size_fx8` about the point has no sample of `view`. With
-/// kRound in `flags` it is a disc, unless that is so small that it may hold no sample.
+/// Fills `piece` unless its square has no sample of `view`. kRound in `flags` makes a disc, unless
+/// that may miss all samples.
 RASTRUM_HD inline SetupResult make_point(const ProjectedVertex& v, std::uint64_t id,
                                          std::uint32_t flags, std::int32_t size_fx8, Rect view,
                                          Piece& piece) {
@@ -82,7 +81,7 @@ RASTRUM_HD inline SetupResult make_point(const ProjectedVertex& v, std::uint64_t
   return SetupResult::drawn;
 }
 
-/// A draw's width as it is drawn: to the nearest whole number, ties to even, at least 1 (GL).
+/// To the nearest whole number, ties to even, at least 1 (GL).
 RASTRUM_HD inline std::uint32_t whole_width(float width) {
   return width > 1 ? static_cast<std::uint32_t>(std::nearbyint(width)) : 1;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From clip space to snapped pixels: divide, viewport, snapping. The float32 operations and their
-// order are picture rules (docs/conventions.md); the SIMD leaves repeat them lane by lane.
+// Clip space to snapped pixels. The float32 operations and their order are picture rules
+// (docs/conventions.md); SIMD files repeat them in lanes.
 #pragma once
 
 #include <cmath>
@@ -16,8 +16,8 @@ inline constexpr int kSubpixelBits = 8;
 inline constexpr int kSubpixels = 1 << kSubpixelBits;
 inline constexpr int kHalfPixel = kSubpixels / 2;
 
-/// The guard band in px. Inside it n.8 coordinates need 24 bits and a sign, so they are exact in
-/// float32, and edge values (a product of two differences below 2^25, doubled) stay below 2^51.
+/// The guard band in px. Inside, n.8 coordinates need 24 bits and a sign, so float32 has them
+/// exactly, and edge values (a product of two differences below 2^25, doubled) stay below 2^51.
 inline constexpr float kGuardMinPx = -32768.0F;
 inline constexpr float kGuardMaxPx = 65536.0F;
 
@@ -30,22 +30,20 @@ struct Viewport {
   }
 };
 
-/// A vertex after projection: 16 bytes, so that a triangle's corner is one aligned load.
+/// 16 bytes, so that a triangle's corner is one aligned load.
 struct alignas(16) ProjectedVertex {
   std::int32_t x_fx8 = 0,
-               y_fx8 = 0;  ///< n.8 fixed point; x = kNeedsClip where there is no position, and y
-                           ///< the planes that it is outside of, as far as is known
+               y_fx8 = 0;  ///< n.8; x = kNeedsClip: no position, y = known outside planes
   float depth = 0;         ///< reversed, z / w
   float inv_w = 0;         ///< 1 / w_clip
 };
 static_assert(sizeof(ProjectedVertex) == 16);
 
-/// Marks a vertex behind the near plane, outside the guard band or not finite: its triangles take
-/// the clipper.
+/// The vertex is behind the near plane, outside the guard band or not finite. Its triangles are
+/// clipped.
 inline constexpr std::int32_t kNeedsClip = std::numeric_limits<std::int32_t>::min();
 
-/// Nearest n.8 number, ties to even. Exact for |px| ≤ 2^16, where px · 256 has at most 24 bits
-/// before the point.
+/// Ties to even. Exact for |px| ≤ 2^16: px · 256 has at most 24 bits before the point.
 RASTRUM_HD inline std::int32_t snap(float px) {
   return static_cast<std::int32_t>(std::nearbyint(px * static_cast<float>(kSubpixels)));
 }
@@ -54,10 +52,10 @@ RASTRUM_HD inline ProjectedVertex project(Vec4 clip, Viewport viewport) {
   const float inv_w = 1.0F / clip.w;
   const float x = clip.x * inv_w * viewport.half_width + viewport.half_width;
   const float y = viewport.half_height - clip.y * inv_w * viewport.half_height;
-  // Written so that a NaN anywhere fails.
+  // A NaN anywhere makes it false.
   const bool visible = clip.w > 0 && clip.z <= clip.w && x >= kGuardMinPx && x <= kGuardMaxPx &&
                        y >= kGuardMinPx && y <= kGuardMaxPx;
-  // −∞ and NaN depths (a far plane overflowed) go to the clipper, which decides in float64.
+  // The clipper decides in float64 on depths of −∞ or NaN (a far plane overflowed).
   const float depth = clip.z * inv_w;
   if (!visible || !(depth >= std::numeric_limits<float>::lowest()))
     return {kNeedsClip, 0, 0.0F, 0.0F};

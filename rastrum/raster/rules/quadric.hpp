@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A quadric on the screen: what setup (make_quadric.hpp) finds of a sphere, cone, tube or disc once
-// a frame, and what its pieces refer to.
+// A quadric on the screen: what setup (make_quadric.hpp) finds once a frame for a sphere, cone,
+// tube or disc, and what its pieces refer to.
 //
-// Sigg, Weyrich, Botsch and Gross, "GPU-based ray-casting of quadratic surfaces" (2006): with M the
-// matrix to clip space a quadric Q is M⁻ᵀ Q M⁻¹ there, and what the ray of pixel (x, y) meets are
-// the depths d with (x, y, d, 1) M⁻ᵀ Q M⁻¹ (x, y, d, 1)ᵀ = 0: A d² + 2 B d + C = 0 with A constant,
-// B linear and D = B² − A C quadratic in x and y. Deviations: all is relative to a pixel and a
-// depth of the primitive's own, so that nothing cancels far from the origin, and in float64; flat
-// ends and the hulls of tubes are intervals of depth along the ray.
+// Sigg, Weyrich, Botsch and Gross, "GPU-based ray-casting of quadratic surfaces" (2006). With M the
+// matrix to clip space, a quadric Q is M⁻ᵀ Q M⁻¹ there. The ray of pixel (x, y) meets it at the
+// depths d with (x, y, d, 1) M⁻ᵀ Q M⁻¹ (x, y, d, 1)ᵀ = 0, that is A d² + 2 B d + C = 0, with A
+// constant, B linear and D = B² − A C quadratic in x and y. Deviations: all is float64 and relative
+// to a pixel and a depth of the primitive, so that nothing cancels far from the origin. Flat ends
+// and hulls of tubes are intervals of depth along the ray.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@
 
 namespace rastrum::raster {
 
-/// Below, (dx, dy) is where a sample lies from Piece::x[0], y[0], px, and e = d − Quadric::depth0.
+/// Below, (dx, dy) is a sample's offset from (Piece::x[0], y[0]), px, and e = d − Quadric::depth0.
 
 /// e ≥ or ≤ at + x · dx + y · dy.
 struct DepthLimit {
@@ -44,22 +44,22 @@ struct QuadricPart {
 struct Quadric {
   double depth0;
   double nearest;         ///< the near plane's e
-  float lowest, highest;  ///< no depth of the primitive lies outside
+  float lowest, highest;  ///< bounds of the primitive's depths
   std::uint32_t part_count;
-  bool is_open;   ///< not what is inside, but the quadric itself between the limits
-  bool is_plain;  ///< one part without limits, and the near plane is not asked
+  bool is_open;   ///< the quadric itself between the limits, not its inside
+  bool is_plain;  ///< one part, no limits, and no check of the near plane
   QuadricPart part[3];
 
-  /// How many bytes are used. The rest behind them is never read.
+  /// Nothing reads the bytes behind these.
   [[nodiscard]] RASTRUM_HD std::size_t bytes() const {
     return is_plain ? offsetof(Quadric, part) + offsetof(QuadricPart, limits)
                     : offsetof(Quadric, part) + part_count * sizeof(QuadricPart);
   }
 };
 
-/// A quadric's pieces are its surface that faces the viewer and, with kFacesAway, the other one.
-/// They have the place of a pixel about which all is told in x[0], y[0] and two corners of their
-/// box in the others, n.8, and refer to the quadric.
+/// A quadric has two pieces: the surface that faces the viewer and, with kFacesAway, the other one.
+/// A piece keeps in x[0], y[0] the pixel that the quadric is relative to, in the others two corners
+/// of its box, n.8, and a pointer to the quadric.
 RASTRUM_HD inline void set_quadric(Piece& p, const Quadric* quadric) {
   const auto halves = std::bit_cast<std::array<float, 2>>(quadric);
   p.z0 = 0;
@@ -125,14 +125,13 @@ RASTRUM_HD inline W choose(bool mask, W yes, W no) {
 
 }  // namespace scalar_wide
 
-/// As depth_at has it.
+/// Clamped as in depth_at.
 RASTRUM_HD inline float quadric_depth(const Quadric& q, double e) {
   const auto depth = static_cast<float>(q.depth0 + e);
   const float at_least_0 = depth > 0 ? depth : 0.0F;
   return at_least_0 < 1 ? at_least_0 : 1.0F;
 }
 
-/// A sample of a surface of a quadric.
 struct QuadricSample {
   bool is_covered;
   float depth;  ///< in [+0, 1]; 0 where it is not covered

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the ray of a sample meets a quadric: the written order of operations, in float64, for one
-// sample (quadric.hpp) or for lanes of them (kernels/wide_lanes-inl.hpp): one body, so the same
-// bits.
+// Where the ray of a sample meets a quadric. One body with a fixed order of float64 operations
+// serves one sample (quadric.hpp) and lanes (kernels/wide_lanes-inl.hpp), so the bits are the same.
 
-/// The parts of a row of samples that do not change along it.
+/// Constant along a row of samples.
 struct QuadricRow {
   struct Part {
     double b, d, dx;
@@ -24,7 +23,7 @@ struct QuadricRow {
   }
 };
 
-/// The roots of a part: where a ray enters it and where it leaves it, whichever is nearer.
+/// Where a ray enters a part and where it leaves it.
 struct Roots {
   W enters, leaves;
   WideMask real;
@@ -59,7 +58,7 @@ RASTRUM_LANES DepthInterval between_limits(const QuadricPart& p, const QuadricRo
   return i;
 }
 
-/// The interval of a ray that lies inside a part: one, since the part is convex.
+/// The part's interval on a ray: one, since the part is convex.
 struct Inside {
   DepthInterval e;
   WideMask any;
@@ -71,8 +70,8 @@ RASTRUM_LANES Inside inside_part(const QuadricPart& p, const QuadricRow::Part& r
     const DepthInterval e{greater(limits.least, r.leaves), lesser(limits.most, r.enters)};
     return {e, both(r.real, at_most(e.least, e.most))};
   }
-  // The eye is inside: of the quadric, or of a cone's other half. All is inside but what lies
-  // between the roots, and the limits leave one of its two parts.
+  // The eye is inside the quadric or a cone's other half. All is inside except between the roots,
+  // and the limits leave one of the two sides.
   const W near_least = greater(limits.least, r.leaves), far_most = lesser(limits.most, r.enters);
   const WideMask is_near = at_most(near_least, limits.most);
   const WideMask is_far = at_most(limits.least, far_most);
@@ -81,7 +80,6 @@ RASTRUM_LANES Inside inside_part(const QuadricPart& p, const QuadricRow::Part& r
   return {e, both(either(is_near, is_far), at_most(e.least, e.most))};
 }
 
-/// A sample of the surface that faces the viewer, or of the one that does not.
 struct Surface {
   W e;
   WideMask covered;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From balls and cones to where they are in the picture and to the coefficients of a quadric: the
-// written order of operations, in float64, for one primitive (make_quadric.cpp) or for lanes of
-// them (kernels/wide_lanes-inl.hpp): one body, so the same bits.
+// Balls and cones to their place in the picture and to a quadric's coefficients. One body with a
+// fixed order of float64 operations serves one primitive (make_quadric.cpp) and lanes
+// (kernels/wide_lanes-inl.hpp), so the bits are the same.
 
 RASTRUM_LANES W clamped(W v, W least, W most) {
   return choose(below(v, least), least, choose(below(most, v), most, v));
@@ -22,8 +22,8 @@ struct WideRange {
 RASTRUM_LANES WideRange united(const WideRange& a, const WideRange& b) {
   return {lesser(a.least, b.least), greater(a.most, b.most)};
 }
-/// The range of row / w over a ball that is ahead: where a plane row − X w = 0 touches it, a
-/// quadratic in X whose discriminant is written so that nothing cancels.
+/// The range of row / w over a ball that is ahead. At its ends a plane row − X w = 0 touches the
+/// ball: a quadratic in X, whose discriminant is written so that nothing cancels.
 RASTRUM_LANES WideRange range_of(const WideBall& ball, const QuadricEye::Row& row,
                                  const QuadricEye::Row& w) {
   const W n = row_at(row, ball.centre), d = row_at(w, ball.centre);
@@ -36,11 +36,11 @@ RASTRUM_LANES WideRange range_of(const WideBall& ball, const QuadricEye::Row& ro
   return {(middle - root) * scale, (middle + root) * scale};
 }
 
-/// Facts about a ball around one end, or about all of them together.
+/// The ball around one end, or all balls together.
 struct WideEnd {
   WideMask is_hidden;  ///< behind the near plane
   WideMask asks_near;  ///< the near plane may cut it
-  WideMask is_ahead;   ///< all of it is where w > 0; else the ranges say nothing
+  WideMask is_ahead;   ///< all of it has w > 0; else the ranges say nothing
   WideRange x, y, z;   ///< over w
 };
 RASTRUM_LANES WideEnd end_of(const QuadricEye& eye, const WideBall& ball) {
@@ -61,17 +61,16 @@ RASTRUM_LANES WideEnd united(const WideEnd& a, const WideEnd& b) {
           united(a.z, b.z)};
 }
 
-/// Where a primitive is in the picture. Its box and its depths are those of the balls about its
-/// ends.
+/// A primitive's place in the picture. Box and depths are those of the balls about its ends.
 struct WidePlace {
   WideMask is_hidden, asks_near;
   WideMask is_ahead;  ///< else the box is the picture
   WideMask is_seen;   ///< the box meets the picture
   WideRange across, down, depths;
-  W x, y;    ///< the place about which all is told: its middle's, or, where that is out of sight,
-             ///< another one of its box; n.8, a whole number
-  W depth0;  ///< the depth about which all is told
-  W reach;   ///< of depths over the primitive
+  W x, y;    ///< the quadric's origin, n.8, whole: the box's middle or, if out of sight, another
+             ///< point of it
+  W depth0;  ///< its depth
+  W reach;   ///< range of depths over the primitive
 };
 RASTRUM_LANES WidePlace place_of(const QuadricEye& eye, const WideBall& first,
                                  const WideBall* second) {
@@ -107,12 +106,11 @@ RASTRUM_LANES WidePlace place_of(const QuadricEye& eye, const WideBall& first,
   p.reach = if_ahead(greater(p.depths.most - p.depths.least, wide(1e-30)), one);
   return p;
 }
-/// The box of a place as two corners, n.8.
+/// The box as two corners, n.8.
 RASTRUM_LANES WideRange corners_of(const WideRange& px) {
   return {floor_of(px.least * wide(kSubpixels) - wide(1)),
           floor_of(px.most * wide(kSubpixels) + wide(2))};
 }
-/// Depths that hold those of the primitive.
 RASTRUM_LANES WideRange bounds_of(const WideRange& depths) {
   const W margin = wide(1e-6) * depths.most;
   return {clamped(depths.least - margin, wide(0), wide(1)),
@@ -133,7 +131,7 @@ RASTRUM_LANES WidePoint operator*(const WidePoint& a, W s) {
 struct WideRays {
   WidePoint o, x, y, depth;
 };
-/// The picture's rays, with a place in it and a depth as their origin.
+/// The picture's rays, with their origin at a place and a depth.
 RASTRUM_LANES WideRays rays_of(const QuadricEye& eye, W x_fx8, W y_fx8, W depth0) {
   const auto column = [&](int i) RASTRUM_LAMBDA {
     return WidePoint{wide(eye.column[i].v), wide(eye.column[i].w)};
@@ -164,7 +162,6 @@ RASTRUM_LANES WideLinear w_of(const WideRays& f) {
   return {f.o.w, f.x.w, f.y.w, f.depth.w};
 }
 
-/// The same of vectors.
 struct WideLinearVec {
   WideVec o, x, y, depth;
 };
@@ -178,7 +175,7 @@ RASTRUM_LANES WideLinearVec without(const WideLinearVec& a, const WideVec& axis)
   const auto rest = [&](const WideVec& v) RASTRUM_LAMBDA { return v - axis * dot(v, axis); };
   return {rest(a.o), rest(a.x), rest(a.y), rest(a.depth)};
 }
-/// Relative to a point: homogeneous, so that it is times w.
+/// Relative to a point, times w (homogeneous).
 RASTRUM_LANES WideLinearVec from(const WideRays& f, const WideVec& p) {
   return {f.o.v - p * f.o.w, f.x.v - p * f.x.w, f.y.v - p * f.y.w, f.depth.v - p * f.depth.w};
 }
@@ -193,9 +190,9 @@ struct WidePart {
   WideLimit limits[2];
 };
 
-/// A quadratic form |s|² − ρ² of rays, about 1 in size. `reach`: of depths over the primitive.
-/// With A = |s_e|² − ρ_e² and B_i = s_e · s_i − ρ_e ρ_i, D_ij = B_i B_j − A C_ij is
-/// (ρ_e s_i − ρ_i s_e) · (ρ_e s_j − ρ_j s_e) − (s_e × s_i) · (s_e × s_j), where nothing cancels.
+/// A quadratic form |s|² − ρ² of rays, about 1 in size. `reach`: depth range of the primitive.
+/// With A = |s_e|² − ρ_e² and B_i = s_e · s_i − ρ_e ρ_i, D_ij = B_i B_j − A C_ij is (ρ_e s_i − ρ_i
+/// s_e) · (ρ_e s_j − ρ_j s_e) − (s_e × s_i) · (s_e × s_j), where nothing cancels.
 RASTRUM_LANES void set_form(const WideLinearVec& s, const WideLinear& rho, W reach,
                             WidePart& part) {
   const WideVec v[3] = {s.o, s.x, s.y};
@@ -211,7 +208,8 @@ RASTRUM_LANES void set_form(const WideLinearVec& s, const WideLinear& rho, W rea
   W a = dot(s.depth, s.depth) - re * re;
   for (int i = 0; i < 3; ++i)
     for (int j = i; j < 3; ++j) d[i][j] = dot(m[i], m[j]) - dot(k[i], k[j]);
-  // The eye on the surface, or rays along the axis: just inside is as good, and has two roots.
+  // The eye is on the surface, or rays run along the axis. Just inside is as good and has two
+  // roots.
   const W least = wide(1e-10) / (reach * reach);
   const WideMask is_flat = opposite(below(least, absolute(a)));
   if (is_any(is_flat)) {
@@ -239,10 +237,10 @@ RASTRUM_LANES WidePart ball_part(const WideRays& rays, const WideBall& ball, W r
   return part;
 }
 
-/// Where g ≥ 0. A plane that holds the rays is turned a little.
+/// Where g ≥ 0. A plane that contains the rays is tilted a little.
 struct FoundLimit {
   WideLimit limit;
-  WideMask crosses;  ///< it did not hold them
+  WideMask crosses;  ///< it did not contain them
 };
 RASTRUM_LANES FoundLimit limit_of(WideLinear g, W reach) {
   const W least = wide(1e-12) * greater(absolute(g.o), wide(1e-3)) / reach;
@@ -252,8 +250,7 @@ RASTRUM_LANES FoundLimit limit_of(WideLinear g, W reach) {
   return {{g.o * scale, g.x * scale, g.y * scale, below(wide(0), g.depth)}, crosses};
 }
 
-/// The cone between two points, where the radii are r0 and r1. w > 0 for all points between its
-/// ends.
+/// The cone between two points with radii r0 and r1. Requires w > 0 between its ends.
 RASTRUM_LANES WidePart cone_part(const WideRays& rays, const WideBall& first,
                                  const WideBall& second, W reach) {
   WidePart part{};
@@ -273,7 +270,7 @@ RASTRUM_LANES WidePart cone_part(const WideRays& rays, const WideBall& first,
   return part;
 }
 
-/// The cone that touches two balls, between the circles where it does.
+/// The cone that touches two balls, between the circles of contact.
 struct TouchingCone {
   WideBall first, second;
 };

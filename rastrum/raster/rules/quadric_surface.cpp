@@ -58,7 +58,7 @@ double QuadricSurface::along_per_px(const RayFrame::Point& h, const QuadricPoint
   const Vec3d between = shape.p1 - shape.p0;
   const double distance = length(between);
   const Vec3d axis = between * (1 / distance);
-  double per_length = 1 / distance;  // of the axis, along the surface
+  double per_length = 1 / distance;  // along the axis, per length along the surface
   if (shape.kind == QuadricKind::hull) {
     if (on.along == 0 || on.along == 1) return 0;  // the balls
     const double sine = (shape.r0 - shape.r1) / distance;
@@ -66,7 +66,7 @@ double QuadricSurface::along_per_px(const RayFrame::Point& h, const QuadricPoint
   } else if (on.normal == axis || on.normal == axis * -1) {
     return 0;  // the flat ends
   }
-  // The point moves with the ray and along it, so that it stays on the plane of the surface.
+  // The point moves with the ray and along it, so it stays on the surface's tangent plane.
   const Vec3d p = h.v * (1 / h.w);
   const Vec3d by_depth = rays.depth.v - p * rays.depth.w;
   const double off_plane = dot(on.normal, by_depth);

@@ -77,7 +77,7 @@ void QuadricStage::prefetch(std::uint64_t i) const {
 ShapeFate QuadricStage::shape(std::uint64_t i, QuadricShape& out) const {
   out = std::visit([&](const auto& geometry) { return shape_of(geometry, i); }, geometry_);
   if (!is_finite(out.p0) || !is_finite(out.p1)) return ShapeFate::dropped;
-  // Written so that a NaN fails.
+  // A NaN fails.
   const auto is_radius = [](double r) { return r >= 0 && std::isfinite(r); };
   if (!is_radius(out.r0) || !is_radius(out.r1)) return ShapeFate::dropped;
   if (!(std::max(out.r0, out.r1) > 0)) return ShapeFate::empty;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Spheres, cylinders, cones, tubes and discs as the pipeline draws them: each is one shape, in
-// object space, under the matrix of its draw.
+// Spheres, cylinders, cones, tubes and discs as the pipeline draws them: one shape each, in object
+// space.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,6 @@ enum class QuadricKind : std::uint8_t {
   disc,       ///< about p0; p1 is its unit normal
 };
 
-/// Whether p1 and r1 belong to a second end.
 constexpr bool has_two_ends(QuadricKind kind) {
   return kind != QuadricKind::sphere && kind != QuadricKind::disc;
 }
@@ -31,10 +30,9 @@ struct QuadricShape {
   QuadricKind kind = QuadricKind::sphere;
   Vec3d p0, p1;
   double r0 = 0, r1 = 0;
-  double along = 0;  ///< of a sphere: which end of its primitive it is about, 0 or 1
+  double along = 0;  ///< of a sphere: the end of its primitive, 0 or 1
 };
 
-/// The outcome of QuadricStage::shape, before the primitive is projected.
 enum class ShapeFate : std::uint8_t {
   drawn,
   empty,   ///< nothing to draw: a radius or a length of 0
@@ -43,27 +41,25 @@ enum class ShapeFate : std::uint8_t {
 
 using QuadricGeometry = std::variant<SpheresView, CylindersView, TubesView, DiscsView>;
 
-/// The two ends of primitive `i`, as indices of positions, radii and colours; equal where it has
-/// only one. Offsets must be in range.
+/// Indices of positions, radii and colours; equal if there is one end. Offsets must be in range.
 struct AxisEnds {
   std::size_t first, second;
 };
 [[nodiscard]] AxisEnds axis_ends(const QuadricGeometry& geometry, std::uint64_t i);
 [[nodiscard]] const ArrayView<Vec3>& positions_of(const QuadricGeometry& geometry);
 
-/// The primitives of a draw and the matrices that they are seen by. Must outlive the frame.
+/// The primitives of a draw and their matrices. Must outlive the frame.
 class QuadricStage {
  public:
-  /// `object_to_clip` need not have an inverse: then nothing is drawn.
+  /// Where `object_to_clip` has no inverse nothing is drawn.
   QuadricStage(const QuadricGeometry& geometry, const Mat4d& object_to_clip);
 
-  /// The shape of primitive `i`, simplified: a hull in which one sphere holds the other is that
-  /// sphere, about one of its two ends. Indices must be in range.
+  /// Simplifies: a hull in which one sphere holds the other becomes that sphere. Indices must be in
+  /// range.
   [[nodiscard]] ShapeFate shape(std::uint64_t i, QuadricShape& out) const;
-  /// Asks the cache for what shape() will read.
+  /// Prefetches what shape() will read.
   void prefetch(std::uint64_t i) const;
   [[nodiscard]] const Mat4d& object_to_clip() const { return object_to_clip_; }
-  /// Null: there is none.
   [[nodiscard]] const Mat4d* clip_to_object() const { return inverse_ ? &*inverse_ : nullptr; }
   [[nodiscard]] const QuadricGeometry& geometry() const { return geometry_; }
 

@@ -7,7 +7,7 @@
 namespace rastrum::raster {
 namespace {
 
-/// The specification gives sixteenths of a pixel.
+/// In sixteenths of a pixel, like the specification.
 constexpr SampleOffset at(int x, int y) {
   return {x * kSubpixels / 16, y * kSubpixels / 16};
 }

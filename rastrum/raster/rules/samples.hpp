@@ -2,11 +2,10 @@
 // Where the samples of a pixel lie: Direct3D 11's standard patterns (D3D11 functional
 // specification, section 19.2.4.1).
 //
-// At a sample that lies (dx, dy) from its pixel's centre a triangle has the coverage and the depth
-// that it has at the centre once it is moved by (−dx, −dy): edge functions are integers, and the
-// depth formula reads only the difference of the two. So a picture of S samples a pixel may be
-// drawn as S pictures of moved pieces; the fast path moves triangles in lanes, where it covers them
-// (cover/sampled_keys.hpp).
+// At a sample (dx, dy) from the centre a triangle has the coverage and depth that it would have at
+// the centre if moved by (−dx, −dy): edge functions are integers, and the depth formula reads only
+// the difference. So S samples a pixel can be drawn as S pictures of moved pieces. The fast path
+// moves triangles in lanes, where it covers them (cover/sampled_keys_simd.cpp).
 #pragma once
 
 #include <cstdint>
@@ -24,29 +23,26 @@ struct SampleOffset {
   std::int32_t x = 0, y = 0;
 };
 
-/// 1, 4, 8 or 16 samples; empty for any other number.
+/// Empty unless `samples` is 1, 4, 8 or 16.
 [[nodiscard]] std::span<const SampleOffset> sample_offsets(int samples) noexcept;
 
-/// Which sample a piece is for: in its flags.
 inline constexpr int kSampleShift = 8;
 RASTRUM_HD constexpr int sample_of(const Piece& p) {
   return static_cast<int>(p.flags >> kSampleShift & (kMaxSamples - 1));
 }
 
-/// Whether the centre lies halfway between the two.
 constexpr bool are_opposite(SampleOffset a, SampleOffset b) {
   return a.x == -b.x && a.y == -b.y;
 }
-/// How far from the centre they lie at most, in x or y, n.8.
+/// The largest distance from the centre in x or y, n.8.
 [[nodiscard]] int reach_of(std::span<const SampleOffset> samples) noexcept;
 
-/// The vertex as it is seen from the samples that lie at `by`.
 RASTRUM_HD inline ProjectedVertex moved(ProjectedVertex v, SampleOffset by) {
   v.x_fx8 -= by.x;
   v.y_fx8 -= by.y;
   return v;
 }
-/// The piece as it is at the samples that lie at `by` (points and lines are the same everywhere).
+/// Points and lines are the same at all samples.
 RASTRUM_HD inline Piece moved(Piece p, SampleOffset by) {
   if (!has_corners(p)) return p;
   for (int c = 0; c < 3; ++c) {
@@ -59,17 +55,15 @@ RASTRUM_HD inline Piece moved(Piece p, SampleOffset by) {
 constexpr bool is_raised_at_once(const Piece& p) {
   return (p.flags & (kAllSamples | kMayDrop)) == kAllSamples;
 }
-/// The piece for sample `number`, which lies at `at`, made from a piece of all samples
-/// (kAllSamples).
 inline Piece piece_at(const Piece& p, int number, SampleOffset at) {
   Piece own = moved(p, at);
   own.flags = (p.flags & ~kAllSamples) | static_cast<std::uint32_t>(number) << kSampleShift;
   return own;
 }
 
-/// Where 64 fragments of a block are shaded, px from the centre of the pixel 8 · row + column that
-/// their element stands for: elsewhere in it, in [−0.5, 0.5), or in another pixel of the block,
-/// where fragments are packed without regard to their pixels. Multiples of 1/16.
+/// Where 64 fragments of a block are shaded, px from the centre of pixel 8 · row + column: in
+/// [−0.5, 0.5) within that pixel, or anywhere in the block where fragments are packed. Multiples of
+/// 1/16.
 struct alignas(64) ShadingPoints {
   float dx[64] = {}, dy[64] = {};  ///< also defined for lanes that are not shaded
 };

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The curve from linear light to display values, in lanes (kernels/lane_math-inl.hpp) or in one
-// float (srgb.hpp).
+// Linear light to display values, in lanes (kernels/lane_math-inl.hpp) or in one float (srgb.hpp).
 
-/// Linear light to display value, both in [0, 1]; what lies outside is clamped, NaN becomes 0.
+/// Clamps to [0, 1]; NaN gives 0.
 RASTRUM_LANES F srgb_from_linear(F linear) {
   const F x = min_of(choose_or_zero(linear > set(0), linear), set(1));
   const F s2 = square_root(x);

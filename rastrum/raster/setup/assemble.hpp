@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From a primitive of a draw to its pieces: the slow, complete path (clipper included), used by the
-// reference rasterizer for every primitive and by the fast ones for what the setup kernel leaves:
-// triangles that need clipping or have a depth bias, lines and points. A device takes it for all
-// (cuda/pieces.cuh), so it is a template on who knows the vertices: FrameGeometry or
-// DeviceGeometry.
+// A draw's primitive to its pieces by the complete, slow path with the clipper. The reference
+// rasterizer uses it for all, fast ones for what the setup kernel leaves: triangles with clipping
+// or a depth bias, lines and points. A device uses it for all (cuda/pieces.cuh), so it is a
+// template on the geometry: FrameGeometry or DeviceGeometry.
 #pragma once
 
 #include <algorithm>
@@ -19,17 +18,16 @@
 
 namespace rastrum::raster {
 
-/// Pieces of one primitive: the fan of a polygon.
+/// The most pieces of a primitive: a polygon's fan.
 inline constexpr int kMaxPieces = kMaxPolygon - 2;
 
 enum class Fate : std::uint8_t { drawn, clipped, culled, dropped };
 
-/// The corners of a primitive before and after projection.
 template <std::size_t n>
 struct PrimitiveCorners {
   ProjectedVertex projected[n];
   bool needs_clip = false;
-  Vec4d clip[n];  ///< where one of them needs it
+  Vec4d clip[n];  ///< if one of them needs clipping
   bool finite = true;
 
   template <class Geometry>
@@ -70,7 +68,7 @@ RASTRUM_HD Fate assemble_triangle(const Geometry& frame, const Draw& draw, std::
   if (facing == 0 || (cull == Cull::back && facing < 0) || (cull == Cull::front && facing > 0))
     return Fate::culled;
   const ClippedPolygon polygon = clip_triangle(c.clip, c.projected, frame.viewport);
-  // Snapping may turn a sliver of the polygon over; only pieces that face as the triangle does
+  // Snapping may turn a sliver of the polygon over. Only pieces that face as the triangle does
   // count.
   const Cull other_side = facing > 0 ? Cull::back : Cull::front;
   bool any = false;
@@ -111,7 +109,7 @@ RASTRUM_HD Fate assemble_point(const Geometry& frame, const Draw& draw, std::uin
   return Fate::drawn;
 }
 
-/// At most two pieces, which refer to a quadric that lives as long as the call of `emit`.
+/// At most two pieces. Their quadric lives during the call of `emit`.
 template <class Emit>
 Fate assemble_quadric(int width, int height, const Draw& draw, std::uint64_t p, std::uint32_t flags,
                       SampleOffset at, Emit&& emit) {
@@ -136,7 +134,7 @@ Fate assemble_quadric(int width, int height, const Draw& draw, std::uint64_t p, 
     back = back && !place.front;
   } else if (front && !quadric.is_open && !place.asks_near &&
              (flags & (kTested | kCut | kTranslucent)) == 0) {
-    back = false;  // it is hidden
+    back = false;  // hidden
   }
   Piece piece;
   std::copy_n(place.x, 3, piece.x);
@@ -154,9 +152,8 @@ Fate assemble_quadric(int width, int height, const Draw& draw, std::uint64_t p, 
   return front || back ? Fate::drawn : Fate::culled;
 }
 
-/// The piece of a triangle that needs no clipping, as assemble_primitive makes it at the pixels'
-/// centres, where most are: of the others nothing is done, and false is returned. Indices must be
-/// in range.
+/// The piece of a triangle without clipping, as assemble_primitive makes it at pixel centres. False
+/// for others, with nothing done. Indices must be in range.
 template <class Geometry>
 RASTRUM_HD bool assemble_unclipped(const Geometry& frame, const Draw& draw, std::uint64_t p,
                                    Fate& fate, Piece& piece) {
@@ -178,9 +175,9 @@ RASTRUM_HD bool assemble_unclipped(const Geometry& frame, const Draw& draw, std:
   return true;
 }
 
-/// Calls emit(piece) for each piece of primitive `p` of `draw` at sample `sample`, which lies at
-/// `at`; says what became of it (`clipped` ones are drawn too). At most kMaxPieces of a primitive.
-/// Indices must be in range. `reach`: as in sample_bounds, by which triangles are left out.
+/// Calls emit(piece) for each piece, at most kMaxPieces, of primitive `p` of `draw` at sample
+/// `sample`, whose offset is `at`. Returns what became of it (`clipped` ones are drawn). Indices
+/// must be in range. `reach`: as in sample_bounds; it decides which triangles are left out.
 template <class Geometry, class Emit>
 RASTRUM_HD Fate assemble_primitive(const Geometry& frame, const Draw& draw, std::uint64_t p,
                                    Emit&& emit, std::uint32_t sample = 0, SampleOffset at = {},
@@ -194,7 +191,7 @@ RASTRUM_HD Fate assemble_primitive(const Geometry& frame, const Draw& draw, std:
     emit(std::as_const(piece));
   };
 #ifndef __CUDACC__
-  // The host's alone, whose frames have them.
+  // Only the host's frames have quadrics.
   if (draw.quadrics != nullptr)
     return assemble_quadric(frame.width, frame.height, draw, p, flags, at, emit);
 #endif

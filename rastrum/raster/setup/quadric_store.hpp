@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Keeps quadrics where pieces can refer to them.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +11,8 @@
 
 namespace rastrum::raster {
 
-/// Quadrics that stay where they are until the next restart; a sphere's 112 bytes, 584 at most.
-/// Keeps its memory.
+/// Quadrics at fixed addresses until the next restart, so that pieces can refer to them. A sphere
+/// has 112 bytes, others at most 584. Keeps its memory.
 class QuadricStore {
  public:
   explicit QuadricStore(MemoryAccount& memory) : memory_(&memory) {}

@@ -13,8 +13,8 @@
 namespace rastrum::raster {
 namespace {
 
-/// The corners of a batch, for frames that keep no projected vertices, and for meshes whose
-/// triangles are no packed list.
+/// The corners of a batch, for frames without projected vertices and for meshes whose triangles are
+/// no packed list.
 struct Corners {
   std::uint32_t indices[kSetupBatch * 3];
   ProjectedVertex vertices[kSetupBatch * 3];
@@ -25,8 +25,7 @@ struct Corners {
     project(frame, draw, count * 3);
     return true;
   }
-  /// Copies [copy, copy + n) of a draw for which is_projected_at_once() says so, with `indices`
-  /// into `vertices`.
+  /// Copies [copy, copy + n) of a draw with is_projected_at_once(); `indices` are into `vertices`.
   bool load_copies(const FrameGeometry& frame, const Draw& draw, std::uint64_t copy,
                    std::uint64_t n) {
     const auto own = static_cast<std::uint32_t>(draw.own_primitives());
@@ -39,7 +38,7 @@ struct Corners {
                         vertices);
     return true;
   }
-  /// The vertices of points. Returns whether all indices are in range.
+  /// Vertices of points. Returns whether all indices are in range.
   bool load_points(const FrameGeometry& frame, const Draw& draw, std::uint64_t t,
                    std::uint32_t count) {
     if (draw.points != nullptr && draw.points->indices.empty()) {
@@ -53,14 +52,14 @@ struct Corners {
     project(frame, draw, count);
     return true;
   }
-  /// All vertices of a draw for which is_projected_at_once() says so.
+  /// All vertices of a draw with is_projected_at_once().
   void load_all(const FrameGeometry& frame, const Draw& draw) {
     draw.source.project(0, draw.vertex_count, frame.viewport, frame.isa, vertices);
   }
 
  private:
-  /// Loads the vertex numbers of triangles [t, t + count), which may be of several copies. False:
-  /// one is out of range.
+  /// The vertex numbers of triangles [t, t + count), maybe of several copies. False: one is out of
+  /// range.
   bool load_indices(const Draw& draw, std::uint64_t t, std::uint32_t count) {
     for (std::uint32_t i = 0; i < count;) {
       const Draw::OfCopy of = draw.of_copy(t + i);
@@ -83,7 +82,7 @@ struct Corners {
     }
     return true;
   }
-  /// Fetches or projects the vertices that the first `n` indices name.
+  /// Fetches or projects the vertices of the first `n` indices.
   void project(const FrameGeometry& frame, const Draw& draw, std::uint32_t n) {
     if (const ProjectedVertex* const projected = frame.projected_of(draw))
       for (std::uint32_t i = 0; i < n; ++i) vertices[i] = projected[indices[i]];
@@ -92,14 +91,14 @@ struct Corners {
   }
 };
 
-/// Whether some of a draw's points are small enough for the kernel that makes fragments.
+/// Whether the fragment kernel may take some of a draw's points.
 bool has_small_points(const Draw& draw) {
   return draw.has_points_kernel() && ((draw.points != nullptr && !draw.points->sizes.empty()) ||
                                       point_size_fx8(draw.point_size) <= kMicroPoint);
 }
 
-/// The sizes of points as their kernel wants them. A size that is not finite counts as large; the
-/// path of large points drops it.
+/// Sizes of points for their kernel. A size that is not finite counts as large; the path of large
+/// points drops it.
 const std::int32_t* sizes_of(const Draw& draw, std::uint64_t first, std::uint32_t count,
                              std::int32_t (&out)[kSetupBatch]) {
   if (draw.points == nullptr || draw.points->sizes.empty()) {
@@ -115,7 +114,6 @@ const std::int32_t* sizes_of(const Draw& draw, std::uint64_t first, std::uint32_
   return out;
 }
 
-/// Triangles of a batch: those that some sample of a pixel sees, say.
 struct TriangleSet {
   std::uint64_t bits[kSetupBatch / 64] = {};
 
@@ -127,7 +125,7 @@ struct TriangleSet {
   }
 };
 
-/// Leaves primitives [first, first + count) to assemble_primitive, which wants indices in range.
+/// Leaves primitives [first, first + count) to assemble_primitive, after checking indices.
 SetupOutput all_slow(const Draw& draw, std::uint64_t first, std::uint32_t count,
                      std::uint32_t* slow) {
   SetupOutput out;
@@ -140,7 +138,6 @@ SetupOutput all_slow(const Draw& draw, std::uint64_t first, std::uint32_t count,
   return out;
 }
 
-/// Whether a piece of the shape may be deferred, as far as the shape can tell.
 bool is_deferrable(const QuadricShape& shape) {
   switch (shape.kind) {
     case QuadricKind::sphere:
@@ -155,13 +152,13 @@ bool is_deferrable(const QuadricShape& shape) {
   return false;
 }
 
-/// Whether what has one surface to show is deferred: opaque, and seen from outside.
+/// Whether a draw's flags and faces allow deferral: opaque, seen from outside.
 bool may_defer(const Draw& draw, std::uint32_t flags) {
   return draw.quadrics != nullptr && draw.quadrics->clip_to_object() != nullptr &&
          draw.effective_cull() != Cull::front && (flags & (kMayDrop | kTranslucent)) == 0;
 }
 
-/// Makes deferred pieces of a batch of quadrics; the others are left to assemble_primitive.
+/// Leaves other quadrics to assemble_primitive.
 SetupOutput defer_quadrics(const FrameContext& frame, const Draw& draw, std::uint64_t first,
                            std::uint32_t count, std::uint32_t flags, Piece* out,
                            std::uint32_t* slow) {
@@ -191,19 +188,19 @@ SetupOutput defer_quadrics(const FrameContext& frame, const Draw& draw, std::uin
   return result;
 }
 
-/// Room for what a kernel writes at most.
+/// Room for the most that a kernel writes.
 Piece* make_room(Pieces& pieces, MicroSink* micro, BinFragment*& fragments) {
   pieces.data.grow(std::size_t{pieces.count} + kSetupBatch, pieces.count);
   fragments = micro == nullptr ? nullptr : micro->room(kSetupFragments);
   return pieces.data.data() + pieces.count;
 }
 
-/// Triangles by the kernel, as many at a time as there is room for with all samples.
+/// Runs the kernel on as many triangles at a time as there is room for at all samples.
 SetupOutput set_up_triangles(const FrameContext& frame, const SetupInput& in, Pieces& pieces,
                              std::uint64_t last_id, MicroSink* micro, std::uint32_t* slow) {
   const auto samples =
       static_cast<std::uint32_t>(in.together ? 1 : std::max<std::size_t>(in.samples.size(), 1));
-  // Ids have 32 bits there.
+  // Small triangles have 32-bit ids.
   const bool takes_small = in.samples.empty() && (in.flags & (kMayDrop | kTranslucent)) == 0 &&
                            last_id < std::uint64_t{1} << 32;
   SetupOutput all;
@@ -234,7 +231,7 @@ SetupOutput set_up_triangles(const FrameContext& frame, const SetupInput& in, Pi
 std::uint32_t equal_flags(const FrameGeometry& frame, const Draw& draw, std::uint64_t first,
                           std::uint32_t count) {
   if (draw.material_flags.empty() && draw.cut == nullptr) return count;
-  // The usual case in a loop of its own: asking for each triangle's flags was 2 % of a frame.
+  // The usual case has its own loop: asking for each triangle's flags took 2 % of a frame.
   if (draw.cut == nullptr && draw.mesh == nullptr && !draw.is_copied() &&
       draw.face_materials.is_packed()) {
     const auto materials =
@@ -251,7 +248,7 @@ std::uint32_t equal_flags(const FrameGeometry& frame, const Draw& draw, std::uin
 }
 
 bool has_indices_in_range(const Draw& draw, std::uint64_t first, std::uint32_t count) {
-  if (draw.quadrics != nullptr) return true;  // they were checked
+  if (draw.quadrics != nullptr) return true;  // already checked
   for (std::uint64_t p = first; p < first + count; ++p)
     for (int corner = 0; corner < static_cast<int>(draw.topology); ++corner)
       if (draw.vertex(p, corner) >= draw.vertex_count) return false;
@@ -265,7 +262,7 @@ void Pieces::add(const Piece& piece) {
   Piece& own = data[count++];
   own = piece;
   if (!is_quadric(piece)) return;
-  // The two sides of a primitive share theirs.
+  // The two sides of a primitive share a quadric.
   const Piece* const last = count > 1 ? &own - 1 : nullptr;
   const bool is_second = last != nullptr && is_quadric(*last) && last->low == piece.low &&
                          (last->flags ^ piece.flags) == kFacesAway;
@@ -285,7 +282,6 @@ std::size_t Pieces::quadric_bytes() const {
 
 namespace {
 
-/// Triangles and other primitives of a frame to pieces.
 class SetUp {
  public:
   SetUp(const FrameContext& frame, Pieces& pieces, const SetUpWay& way)
@@ -293,27 +289,27 @@ class SetUp {
         geometry_(frame.geometry),
         pieces_(pieces),
         samples_(sample_offsets(frame.request.samples)),
-        // The filter's errors are those of sorted pieces.
+        // The filter's errors are those for sorted pieces.
         micro_(transparency::filter_of(frame.request.transparency) != 0 ? nullptr : way.micro),
         bins_(way.bins),
         defers_(way.defers),
         together_(way.together) {}
 
-  /// Primitives [first, last), which may span draws. Returns whether all indices were in range.
+  /// Primitives [first, last), maybe of several draws. Returns whether all indices were in range.
   bool range(std::uint64_t first, std::uint64_t last);
-  /// A cluster of the mesh. `next`: what is set up after it, or null.
+  /// A cluster of a mesh. `next`: what is set up after it, or null.
   void cluster(const SetupRun& run, const SetupRun* next);
 
  private:
-  /// Primitives of one draw that have the same flags.
+  /// Primitives of one draw with the same flags.
   struct Batch {
     const Draw& draw;
-    std::uint64_t first = 0;  ///< of the draw
-    /// The number of each primitive behind `first`; null: in order.
+    std::uint64_t first = 0;  ///< in the draw
+    /// The number of each primitive, added to `first`; null: in order.
     const std::uint32_t* numbers = nullptr;
     std::uint32_t count = 0;
     std::uint32_t flags = 0;
-    bool as_points = false;  ///< by the kernel of points, whose vertices are there
+    bool as_points = false;  ///< by the points kernel, with loaded vertices
 
     [[nodiscard]] std::uint64_t primitive(std::uint32_t i) const {
       return first + (numbers != nullptr ? numbers[i] : i);
@@ -328,7 +324,7 @@ class SetUp {
     input.bins = bins_;
     return input;
   }
-  /// Whether some sample of the picture lies in the box of `piece`, which serves all samples.
+  /// Whether a sample of the picture lies in the box of `piece`, a piece for all samples.
   [[nodiscard]] bool may_be_seen(const Piece& piece) const {
     return std::ranges::any_of(samples_, [&](SampleOffset at) {
       return !piece_bounds(moved(piece, at), image()).empty();
@@ -360,7 +356,7 @@ bool SetUp::range(std::uint64_t first, std::uint64_t last) {
       id += hidden;
       continue;
     }
-    // A batch holds as many small copies as there is room for, and else one of them at most.
+    // A batch takes as many small copies as there is room for, or at most one other.
     const Draw::OfCopy of = draw.of_copy(t);
     const bool at_once = is_projected_at_once(draw);
     const std::uint64_t own = draw.own_primitives();
@@ -368,7 +364,7 @@ bool SetUp::range(std::uint64_t first, std::uint64_t last) {
         at_once ? std::min(kSetupBatch / own, draw.copies.count - of.copy) : 1;
     const auto most = static_cast<std::uint32_t>(
         std::min({std::uint64_t{kSetupBatch}, last - id, copies * own - of.primitive}));
-    // Clip planes look at the corners before the kernel does.
+    // Clip planes read corners before the kernel checks them.
     if (draw.cut != nullptr && !has_indices_in_range(draw, t, most)) return false;
     const std::uint32_t count = equal_flags(geometry_, draw, t, most);
     const std::uint32_t flags = geometry_.flags_of(draw, t);
@@ -445,19 +441,19 @@ void SetUp::cluster(const SetupRun& run, const SetupRun* next) {
     }
   } else {
     project(draw, copy, cluster, all);
-    // Others may write vertices meanwhile, so the clipper projects its own.
+    // Other threads may be writing vertices, so the clipper projects its own.
     slow_geometry.projected = nullptr;
   }
   for (std::uint32_t i = 0; i < cluster.triangles * 3U; ++i) corners_.indices[i] = corner[i];
   input.vertices = corners_.vertices;
   input.vertex_count = cluster.vertices;
-  // Its triangles have one material.
+  // A cluster has one material.
   const std::uint32_t flags = geometry_.flags_of(draw, first - draw.first_id + numbers[0]);
   (void)batch({draw, first - draw.first_id, numbers, cluster.triangles, flags, false},
               slow_geometry, input);
 }
 
-/// The vertices of a cluster to `corners_` and, where there is a place, to those of `all`.
+/// Projects a cluster's vertices to `corners_` and, if there is a place, to `all`.
 void SetUp::project(const Draw& draw, std::uint64_t copy, const MeshCluster& cluster,
                     ProjectedVertex* all) {
   const MeshClusters& mesh = *draw.clusters;
@@ -472,8 +468,8 @@ void SetUp::project(const Draw& draw, std::uint64_t copy, const MeshCluster& clu
   else
     frame_.kernel.project64(mesh.wide.data() + cluster.first_vertex, cluster.vertices,
                             matrix.object_to_clip, geometry_.viewport, vertices);
-  // Clusters share vertices, so several threads may write the same one: the same bits, but each
-  // half has to be written at once.
+  // Clusters share vertices, so several threads may write the same bits. Each half must be one
+  // write.
   for (std::uint32_t v = 0; all != nullptr && v < cluster.vertices; ++v) {
     const auto halves = std::bit_cast<std::array<std::uint64_t, 2>>(vertices[v]);
     auto* const to = reinterpret_cast<std::uint64_t*>(all + name[v]);
@@ -482,14 +478,14 @@ void SetUp::project(const Draw& draw, std::uint64_t copy, const MeshCluster& clu
   }
 }
 
-/// `input` has all but the flags and samples.
+/// `input` lacks only the flags and samples.
 bool SetUp::batch(const Batch& of, const FrameGeometry& slow_geometry, SetupInput& input) {
   const Draw& draw = of.draw;
   const std::uint32_t count = of.count;
   TriangleSet seen, clipped, dropped;
   std::uint32_t seen_points = 0;
   input.flags = of.flags;
-  // Without transparency, translucent surfaces are drawn as opaque ones.
+  // Without transparency, translucent surfaces are drawn as opaque.
   if (frame_.request.transparency.method == Transparency::none) input.flags &= ~kTranslucent;
   SetupOutput of_all, of_points;
   const bool by_kernel = !of.as_points && draw.has_kernel();
@@ -503,14 +499,14 @@ bool SetUp::batch(const Batch& of, const FrameGeometry& slow_geometry, SetupInpu
                               slow_);
     if (!of_all.index_in_range) return false;
   }
-  // Some triangles are set up for all samples together, on this path as on the others.
+  // Like the kernel, this path sets some triangles up once for all samples.
   const bool all_samples =
       together_ && draw.quadrics == nullptr && draw.topology == Topology::triangles;
   const int reach = all_samples ? reach_of(samples_) : 0;
   for (std::uint32_t sample = 0; sample < (all_samples ? 1 : samples_.size()); ++sample) {
     const SampleOffset at = all_samples ? SampleOffset{} : samples_[sample];
     SetupOutput out = of_all;
-    // A point is at all samples of its pixels: its fragments are of all of them.
+    // A point covers all samples of its pixels, so its fragments are for all.
     if (of.as_points && together_ && sample > 0) {
       out = of_points;
     } else if (!by_kernel) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Projection and setup with Highway, compiled once per instruction set. Each repeats the operations
-// of its scalar twin (projection.hpp, make_piece.hpp) in the same order, so it gives the same bits.
+// Projection and setup with Highway, compiled once per instruction set. Operations, order and bits
+// are those of the scalar forms (projection.hpp, make_piece.hpp).
 
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
@@ -31,11 +31,11 @@ HWY_INLINE F row_times(const float (&m)[4], F x, F y, F z) {
   return hn::Add(hn::Add(xy, hn::Mul(hn::Set(d, m[2]), z)), hn::Set(d, m[3]));
 }
 
-/// For positions without a place: bits of the clipper's planes that they are far outside of, so far
-/// that the clipper keeps nothing of a triangle whose corners all are, whatever its roundings; 0:
-/// none is known. The clipper's distances are float64, computed from these numbers. For the near
-/// plane their sign is this one's. For the guard band, distances of new corners are off by less
-/// than 1 px · w where no number is large.
+/// For positions without a place: bits of the clipper's planes that they are far outside of.
+/// Whatever its roundings, the clipper keeps nothing of a triangle whose corners share a bit. 0:
+/// none is known. The clipper's float64 distances are computed from these numbers. For the near
+/// plane they have the same sign. For the guard band, distances of new corners are off by less than
+/// 1 px · w unless a number is large.
 HWY_NOINLINE I outside_planes(F x, F y, F z, F w, Viewport viewport) {
   const F32 d;
   const I32 di;
@@ -62,7 +62,7 @@ HWY_NOINLINE I outside_planes(F x, F y, F z, F w, Viewport viewport) {
   return planes;
 }
 
-/// From clip space on. Positions without a place have outside_planes in place of y.
+/// From clip space on. Positions without a place get outside_planes as y.
 HWY_INLINE void project_lanes(F cx, F cy, F cz, F cw, Viewport viewport, ProjectedVertex* out) {
   const F32 d;
   const I32 di;
@@ -98,7 +98,7 @@ HWY_INLINE void project_lanes(F x, F y, F z, const Mat4& m, Viewport viewport,
                 row_times(m.m[3], x, y, z), viewport, out);
 }
 
-/// Whole vectors of `n` positions, then the rest beside zeros.
+/// Whole vectors of `n` positions, then the rest with zeros.
 template <class Position, class ProjectLanes>
 HWY_INLINE void project_all(const Position* positions, std::size_t n, ProjectedVertex* out,
                             const ProjectLanes& project_some) {
@@ -144,7 +144,6 @@ void project64(const Vec3d* positions, std::size_t n, const Mat4d& m, Viewport v
   });
 }
 
-/// Corner vertices of kLanes triangles, transposed.
 struct Corners {
   I x, y;
   F depth;
@@ -187,7 +186,7 @@ HWY_INLINE Corners load_corners(const SetupInput& in, const std::uint32_t* index
   return {joined(x), joined(y), hn::BitCast(d, joined(depth))};
 }
 
-/// The corners as they are seen from the samples that lie at `by`; none needs the clipper.
+/// As seen from the samples at `by`; no corner may need the clipper.
 HWY_INLINE Corners moved_lanes(Corners c, SampleOffset by) {
   const I32 d;
   c.x = hn::Sub(c.x, hn::Set(d, by.x));
@@ -195,8 +194,8 @@ HWY_INLINE Corners moved_lanes(Corners c, SampleOffset by) {
   return c;
 }
 
-/// The indices of the triangles from `offset` on by corner: kLanes, or those that are left, the
-/// first of them in the other lanes. Returns whether all are in range.
+/// The indices of kLanes triangles from `offset` on, by corner. Beyond the end the first one is
+/// repeated. Returns whether all are in range.
 HWY_INLINE bool load_indices(const SetupInput& in, std::uint32_t offset,
                              std::uint32_t (&index)[3][kLanes]) {
   const U32 d;
@@ -234,7 +233,7 @@ HWY_INLINE I max3_lanes(I a, I b, I c) {
   return hn::Max(a, hn::Max(b, c));
 }
 
-/// The bin and the place in it of pixel (x, y), as fragment_at has them.
+/// The bin of pixel (x, y), and below its place there, as in fragment_at.
 HWY_INLINE I bin_of(I x, I y, std::uint32_t columns) {
   static_assert(kBinSize == 64);
   const I row = hn::Mul(hn::ShiftRight<6>(y), hn::Set(I32{}, static_cast<int>(columns)));
@@ -247,12 +246,11 @@ HWY_INLINE I pixel_in_bin(I x, I y) {
                 hn::Or(hn::ShiftLeft<3>(part(y, 7)), part(x, 7)));
 }
 
-/// Triangles by lane.
 struct Classes {
-  std::uint32_t drawn = 0;  ///< may cover a sample
-  std::uint32_t none = 0;   ///< micro triangles that would be drawn, but cover no sample
-  std::uint32_t slow = 0;   ///< need the clipper
-  HWY_ALIGN std::uint32_t micro[kLanes] = {};  ///< covered samples of micro triangles, 0 for others
+  std::uint32_t drawn = 0;                     ///< may cover a sample
+  std::uint32_t none = 0;                      ///< micro triangles that cover no sample
+  std::uint32_t slow = 0;                      ///< need the clipper
+  HWY_ALIGN std::uint32_t micro[kLanes] = {};  ///< samples that micro triangles cover, else 0
 };
 
 /// Negates v in the lanes where m is −1.
@@ -260,8 +258,8 @@ HWY_INLINE I negate_if(I v, I m) {
   return hn::Sub(hn::Xor(v, m), m);
 }
 
-/// Lanes of triangles that are culled for their winding, or for having no area. Exact in float64:
-/// differences have 25 bits, products 50.
+/// Lanes that are culled for their winding or for having no area. Exact in float64: differences
+/// have 25 bits, products 50.
 HWY_INLINE std::uint32_t culled_lanes(const Corners& a, const Corners& b, const Corners& c,
                                       Cull cull) {
   const I dx1 = hn::Sub(b.x, a.x), dy1 = hn::Sub(b.y, a.y);
@@ -282,8 +280,8 @@ HWY_INLINE std::uint32_t culled_lanes(const Corners& a, const Corners& b, const 
   return culled;
 }
 
-/// Coverage of micro triangles, a lane each: the sign bits of the edge functions at kMicroSize²
-/// samples from (x0, y0) on. Boxes of up to 5 px keep every product far inside int32.
+/// Coverage of micro triangles, one a lane: sign bits of edge functions at kMicroSize² samples from
+/// (x0, y0) on. With boxes of up to 5 px all products are far inside int32.
 HWY_INLINE I micro_masks(const Corners& a, const Corners& b, const Corners& c, I x0, I y0, I area) {
   const I32 d;
   const I zero = hn::Zero(d);
@@ -302,7 +300,7 @@ HWY_INLINE I micro_masks(const Corners& a, const Corners& b, const Corners& c, I
   edge(1, b, c);
   edge(2, c, a);
   I outside = zero;
-  // Backwards, so that shifting the collected bits left leaves the first sample in bit 0.
+  // Backwards, so that shifting the bits left leaves the first sample in bit 0.
   for (int i = 0; i < 3; ++i)
     value[i] = hn::Add(value[i], hn::Mul(hn::Add(dx[i], dy[i]), hn::Set(d, kMicroSize - 1)));
   for (int row = 0; row < kMicroSize; ++row) {
@@ -320,14 +318,13 @@ HWY_INLINE I micro_masks(const Corners& a, const Corners& b, const Corners& c, I
   return hn::AndNot(outside, hn::Set(d, 0xFFFF));
 }
 
-/// Triangles with a corner without a place.
+/// Triangles with a corner that has no place.
 HWY_INLINE std::uint32_t clipped_lanes(const Corners& a, const Corners& b, const Corners& c) {
   const I needs_clip = hn::Set(I32{}, kNeedsClip);
   return lane_bits(
       hn::Or(hn::Eq(a.x, needs_clip), hn::Or(hn::Eq(b.x, needs_clip), hn::Eq(c.x, needs_clip))));
 }
-/// Clipped triangles of which the clipper may keep something: not all corners are outside of one
-/// plane.
+/// The `clipped` triangles of which the clipper may keep something: no plane excludes all corners.
 HWY_INLINE std::uint32_t left_to_clipper(const Corners& a, const Corners& b, const Corners& c,
                                          std::uint32_t clipped) {
   if (clipped == 0) return 0;
@@ -339,7 +336,7 @@ HWY_INLINE std::uint32_t left_to_clipper(const Corners& a, const Corners& b, con
   return clipped & lane_bits(hn::Eq(common, hn::Zero(d)));
 }
 
-/// `kCulls`: looks for culled triangles, too; else the caller has left them out.
+/// `kCulls`: also finds culled triangles; else the caller has left them out.
 template <bool kCulls>
 HWY_INLINE Classes classify(const Corners& a, const Corners& b, const Corners& c,
                             const SetupInput& in) {
@@ -347,7 +344,7 @@ HWY_INLINE Classes classify(const Corners& a, const Corners& b, const Corners& c
   Classes classes;
   const I before = hn::Set(d, kHalfPixel - 1);
   const I half = hn::Set(d, kHalfPixel);
-  // First and last sample of the box; inclusive.
+  // First and last sample of the box, inclusive.
   const I x0 = hn::ShiftRight<kSubpixelBits>(hn::Add(min3_lanes(a.x, b.x, c.x), before));
   const I y0 = hn::ShiftRight<kSubpixelBits>(hn::Add(min3_lanes(a.y, b.y, c.y), before));
   const I x1 = hn::ShiftRight<kSubpixelBits>(hn::Sub(max3_lanes(a.x, b.x, c.x), half));
@@ -386,15 +383,14 @@ HWY_INLINE Classes classify(const Corners& a, const Corners& b, const Corners& c
   return classes;
 }
 
-/// Triangles that wait until there are kLanes of them: a third of a closed mesh survives culling.
+/// Triangles that wait until there are kLanes: a third of a closed mesh survives culling.
 struct Waiting {
   std::uint32_t count = 0;
   std::uint32_t index[3][2 * kLanes];
   std::uint32_t triangle[2 * kLanes];
   std::uint32_t micro[2 * kLanes];
 
-  /// Adds the triangles of `lanes`, of kLanes triangles from t on; fewer than kLanes must wait
-  /// before.
+  /// Adds the triangles `lanes` of kLanes triangles from t on. Fewer than kLanes may be waiting.
   HWY_INLINE void add(const std::uint32_t (&corners)[3][kLanes], std::uint32_t lanes,
                       std::uint32_t t, const std::uint32_t* micro_masks) {
 #if HWY_MAX_BYTES >= 64
@@ -407,7 +403,7 @@ struct Waiting {
     hn::StoreU(hn::Compress(hn::Iota(d, t), mask), d, triangle + count);
     hn::StoreU(hn::Compress(hn::LoadU(d, micro_masks), mask), d, micro + count);
     count += static_cast<std::uint32_t>(std::popcount(lanes));
-#else  // by tables it takes longer than one by one
+#else  // tables are slower than one by one
     for (; lanes != 0; lanes &= lanes - 1) {
       const auto lane = static_cast<std::uint32_t>(std::countr_zero(lanes));
       for (std::size_t c = 0; c < 3; ++c) index[c][count] = corners[c][lane];
@@ -416,7 +412,7 @@ struct Waiting {
     }
 #endif
   }
-  /// Forgets the first n, which are all or kLanes.
+  /// Drops the first n: all, or kLanes.
   HWY_INLINE void drop(std::uint32_t n) {
     count -= n;
     if (count == 0) return;
@@ -429,9 +425,10 @@ struct Waiting {
   }
 };
 
-/// The numbers of kLanes pieces that are the same for every sample, but for their places.
+/// Numbers of kLanes pieces that all samples share, except for their moves.
 struct PieceLanes {
-  HWY_ALIGN std::int32_t first[kLanes * 4], second[kLanes * 4];  ///< a piece's first eight numbers
+  HWY_ALIGN std::int32_t first[kLanes * 4],
+      second[kLanes * 4];  ///< the first eight numbers of a piece
   HWY_ALIGN float zx[kLanes], zy[kLanes];
   std::uint32_t facing_away;
 };
@@ -459,7 +456,7 @@ HWY_INLINE void set_up_lanes(const Corners& a, const Corners& b, const Corners& 
     hn::StoreU(hn::DemoteTo(dh, gy), dh, out.zy + h * kLanes64);
     hn::StoreU(hn::DemoteTo(dh, det), dh, sign + h * kLanes64);
   }
-  // |det| ≥ 1, so its sign survives the rounding to float32.
+  // |det| ≥ 1, so its sign survives rounding to float32.
   const auto keep = hn::RebindMask(di, hn::Gt(hn::LoadU(df, sign), hn::Zero(df)));
   out.facing_away = lane_bits(keep);
   const I sx = hn::IfThenElse(keep, b.x, c.x), sy = hn::IfThenElse(keep, b.y, c.y);
@@ -469,8 +466,8 @@ HWY_INLINE void set_up_lanes(const Corners& a, const Corners& b, const Corners& 
                         di, out.second);
 }
 
-/// Writes the pieces of `lanes`, which may cover a sample, in order. `triangle` is by lane; with
-/// kMoved as sample `number` of the pixels sees them.
+/// Writes pieces of `lanes`, which may cover a sample, in order. `triangle` is by lane. kMoved:
+/// moved for sample `number`.
 template <bool kMoved>
 HWY_INLINE void write_pieces(const SetupInput& in, const PieceLanes& from, std::uint32_t number,
                              std::uint32_t lanes, const std::uint32_t* triangle, Piece* pieces,
@@ -495,7 +492,7 @@ HWY_INLINE void write_pieces(const SetupInput& in, const PieceLanes& from, std::
   }
 }
 
-/// Element m: the numbers of the bits of m, a byte each, from the lowest on.
+/// Element m: the numbers of m's bits, a byte each, from the lowest on.
 constexpr auto kBitsOfByte = [] {
   std::array<std::uint64_t, 256> table{};
   for (std::uint32_t m = 0; m < 256; ++m)
@@ -504,7 +501,7 @@ constexpr auto kBitsOfByte = [] {
   return table;
 }();
 
-/// The samples of a micro triangle's mask that lie in `view`; its first is (x, y).
+/// The samples in `view` of a micro triangle's mask, whose first sample is (x, y).
 HWY_INLINE std::uint32_t micro_in_view(std::uint32_t mask, int x, int y, Rect view) {
   const auto between = [](int begin, int end) {
     const std::uint32_t before = (1U << std::clamp(begin, 0, kMicroSize)) - 1;
@@ -518,10 +515,9 @@ HWY_INLINE std::uint32_t micro_in_view(std::uint32_t mask, int x, int y, Rect vi
   return mask & inside;
 }
 
-/// The covered samples of the micro triangles of `lanes` as fragments, in the order of triangles
-/// and samples. First a list of them, then kLanes samples at a time, which look up what they need
-/// of their triangle's lane: one by one they took a third of the setup of a mesh of a million.
-/// Writes up to kLanes more than it returns.
+/// The covered samples of the micro triangles of `lanes` as fragments, in order of triangles and
+/// samples. Lists the samples first; then kLanes at a time look up their triangle's lane. One by
+/// one took a third of the setup of a mesh of a million. Writes up to kLanes more than it returns.
 HWY_INLINE std::uint32_t write_fragments(const SetupInput& in, const Corners& a, const Corners& b,
                                          const Corners& c, const PieceLanes& from,
                                          std::uint32_t lanes, const std::uint32_t* triangle,
@@ -542,7 +538,7 @@ HWY_INLINE std::uint32_t write_fragments(const SetupInput& in, const Corners& a,
     hn::Store(first_x, di, xs);
     hn::Store(first_y, di, ys);
   }
-  // A byte a sample: lane, column and row in it.
+  // A byte a sample: lane, row and column.
   std::uint8_t list[kLanes * kMicroSize * kMicroSize + 2 * sizeof(std::uint64_t)];
   HWY_ALIGN std::uint32_t numbers[kLanes] = {};
   std::uint32_t count = 0;
@@ -601,7 +597,7 @@ HWY_INLINE std::uint32_t write_fragments(const SetupInput& in, const Corners& a,
   return count;
 }
 
-/// Writes those of `lanes` that are small to `in.small`, once a bin; returns which.
+/// Writes small triangles of `lanes` to `in.small`, one for each bin; returns which are small.
 HWY_INLINE std::uint32_t write_small(const SetupInput& in, const Corners& a, const Corners& b,
                                      const Corners& c, const PieceLanes& from, std::uint32_t lanes,
                                      const std::uint32_t* triangle, SetupOutput& out) {
@@ -610,7 +606,7 @@ HWY_INLINE std::uint32_t write_small(const SetupInput& in, const Corners& a, con
   const auto set = [&](int v) HWY_ATTR { return hn::Set(d, v); };
   const Rect view = in.bins.view;
   const I before = set(kHalfPixel - 1), half = set(kHalfPixel);
-  // As seen from the view's first pixel.
+  // Relative to the view's first pixel.
   const auto first_of = [&](I p, I q, I r, int origin) HWY_ATTR {
     return hn::Sub(hn::ShiftRight<kSubpixelBits>(hn::Add(min3_lanes(p, q, r), before)),
                    set(origin));
@@ -635,7 +631,7 @@ HWY_INLINE std::uint32_t write_small(const SetupInput& in, const Corners& a, con
       small & lane_bits(hn::And(hn::And(hn::Eq(column, last_column), hn::Eq(row, last_row)),
                                 hn::And(inside(column, columns), inside(row, rows))));
   const auto away = hn::RebindMask(d, lane_mask(from.facing_away));
-  // Corners in the bin, its second and third in the order of the winding.
+  // Corners in the bin, in the order of the winding.
   constexpr int kBinBits = 6 + kSubpixelBits;
   const I origin_x = hn::Add(hn::ShiftLeft<kBinBits>(column), set(view.x0 * kSubpixels));
   const I origin_y = hn::Add(hn::ShiftLeft<kBinBits>(row), set(view.y0 * kSubpixels));
@@ -672,7 +668,7 @@ HWY_INLINE std::uint32_t write_small(const SetupInput& in, const Corners& a, con
   for (std::uint32_t rest = in_one; rest != 0; rest &= rest - 1)
     copy(static_cast<std::uint32_t>(std::countr_zero(rest)));
   if (small == in_one) return small;
-  // One in each bin that the box touches: corners lie up to kMostRows px beside it.
+  // One in each bin of the box: corners lie up to kMostRows px outside.
   HWY_ALIGN std::int32_t left[kLanes], top[kLanes], right[kLanes], bottom[kLanes];
   hn::Store(column, d, left);
   hn::Store(row, d, top);
@@ -694,8 +690,8 @@ HWY_INLINE std::uint32_t write_small(const SetupInput& in, const Corners& a, con
   return small;
 }
 
-/// The triangles of `lanes` as pieces, or those that have a mask in `micro` as fragments. With
-/// kMoved `a`, `b` and `c` are where sample `number` sees them.
+/// Writes the triangles of `lanes` as pieces, or as fragments those with a mask in `micro`. kMoved:
+/// `a`, `b` and `c` are moved for sample `number`.
 template <bool kMoved>
 HWY_INLINE void write(const SetupInput& in, const Corners& a, const Corners& b, const Corners& c,
                       const PieceLanes& from, std::uint32_t number, std::uint32_t lanes,
@@ -717,13 +713,13 @@ HWY_INLINE void write(const SetupInput& in, const Corners& a, const Corners& b, 
       write_fragments(in, a, b, c, from, small, triangle, micro, fragments + out.fragments);
 }
 
-/// Lanes of triangles whose boxes hold some sample of the view.
+/// Lanes of triangles whose box has a sample of the view.
 HWY_INLINE std::uint32_t seen_lanes(const Corners& a, const Corners& b, const Corners& c,
                                     const SetupInput& in) {
   const I32 d;
   const I left = min3_lanes(a.x, b.x, c.x), right = max3_lanes(a.x, b.x, c.x);
   const I top = min3_lanes(a.y, b.y, c.y), bottom = max3_lanes(a.y, b.y, c.y);
-  // First and last sample of the box lie apart.
+  // Whether the box has no sample that lies `at` from its pixel's centre.
   const auto empty = [&](I least, I most, int at, int begin, int end) HWY_ATTR {
     const I first = hn::ShiftRight<kSubpixelBits>(hn::Add(least, hn::Set(d, kHalfPixel - 1 - at)));
     const I last = hn::ShiftRight<kSubpixelBits>(hn::Sub(most, hn::Set(d, kHalfPixel + at)));
@@ -736,10 +732,10 @@ HWY_INLINE std::uint32_t seen_lanes(const Corners& a, const Corners& b, const Co
   return seen;
 }
 
-// Out of line is what setup would else have several copies of: inlined it was 67 KB of code instead
-// of 25, and no faster.
+// The functions below are out of line because setup would have several copies: inlined it was 67 KB
+// of code instead of 25, and no faster.
 
-/// The triangles of `lanes` for several samples, of which each finds its own classes.
+/// The triangles of `lanes` for several samples, each with its own classes.
 HWY_NOINLINE void write_sampled(const SetupInput& in, const Corners& a, const Corners& b,
                                 const Corners& c, const PieceLanes& set_up, std::uint32_t lanes,
                                 const std::uint32_t* triangle, Piece* pieces,
@@ -765,7 +761,7 @@ HWY_NOINLINE void write_sampled(const SetupInput& in, const Corners& a, const Co
   }
 }
 
-/// Sets up the triangles of `lanes` and draws them. `micro` is of one sample alone.
+/// Sets up the triangles of `lanes` and writes them. `micro`: with one sample only.
 HWY_NOINLINE void make_pieces(const SetupInput& in, const Corners& a, const Corners& b,
                               const Corners& c, std::uint32_t lanes, const std::uint32_t* triangle,
                               const std::uint32_t* micro, Piece* pieces, BinFragment* fragments,
@@ -778,14 +774,14 @@ HWY_NOINLINE void make_pieces(const SetupInput& in, const Corners& a, const Corn
     write_sampled(in, a, b, c, set_up, lanes, triangle, pieces, fragments, out);
 }
 
-/// Finds the triangles that some sample of a pixel may see; the rest is tested for each sample.
+/// Finds triangles that some sample may see; each sample tests the rest.
 HWY_NOINLINE Classes classify_sampled(const Corners& a, const Corners& b, const Corners& c,
                                       const SetupInput& in) {
   const I32 d;
   Classes classes;
   const std::uint32_t clipped = clipped_lanes(a, b, c);
   classes.slow = left_to_clipper(a, b, c, clipped);
-  // Pixels of which the box touches something.
+  // The pixels that a box touches.
   const I last = hn::Set(d, kSubpixels - 1);
   const auto outside = [&](I p, I q, I r, int first, int end) HWY_ATTR {
     const I least = min3_lanes(p, q, r), most = max3_lanes(p, q, r);
@@ -811,7 +807,7 @@ HWY_NOINLINE void make_pieces(const SetupInput& in, Waiting& waiting, std::uint3
   waiting.drop(n);
 }
 
-/// So many of kLanes that to set them up at once is cheaper than to gather them again with others.
+/// With so many of kLanes, setting up at once is cheaper than gathering them with others.
 constexpr std::uint32_t kDense = kLanes - kLanes / 4;
 constexpr std::uint32_t kAllLanes = (1U << kLanes) - 1;
 
@@ -861,7 +857,7 @@ HWY_INLINE void one_pixel_points(const PointsInput& in, std::uint32_t first, Bin
   hn::LoadInterleaved4(di, reinterpret_cast<const std::int32_t*>(in.vertices + first), vx, vy, bits,
                        inv_w);
   const std::uint32_t clipped = lane_bits(hn::Eq(vx, set(kNeedsClip)));
-  // ⌈v / 256⌉ − 1, as point_square has it.
+  // ⌈v / 256⌉ − 1, as in point_square.
   const I x = hn::ShiftRight<kSubpixelBits>(hn::Sub(vx, set(1)));
   const I y = hn::ShiftRight<kSubpixelBits>(hn::Sub(vy, set(1)));
   const auto inside = [&](I v, int begin, int end) HWY_ATTR {
@@ -898,7 +894,7 @@ SetupOutput points(const PointsInput& in, BinFragment* fragments, std::uint32_t*
   if (in.sizes == nullptr)
     for (; i + kLanes <= in.count; i += kLanes) one_pixel_points(in, i, fragments, slow, out);
   if (i == in.count) return out;
-  // Larger ones, and the last few, the scalar way.
+  // Larger ones, and the last few, by the scalar form.
   PointsInput rest = in;
   rest.vertices += i;
   rest.count -= i;

@@ -21,7 +21,7 @@ std::vector<std::uint32_t> material_flags(std::span<const Material> materials, b
 
 namespace {
 
-/// Calls f(values, n) for runs of a view, without copies of what is packed.
+/// Calls f(values, n) for runs of a view; packed values are not copied.
 template <class View, class F>
 void for_each_run(const View& view, std::size_t begin, std::size_t end, const F& f) {
   if (view.is_packed()) return f(view.data() + begin, end - begin);
@@ -64,7 +64,7 @@ std::uint32_t set_material_flags(Draw& draw, const InstanceView& instance,
 
 bool has_color_alpha(const InstanceView& instance, const ArrayView<Vec4>& colors,
                      parallel::Threads* exec) {
-  // Written so that a NaN is found.
+  // Finds a NaN, too.
   const auto is_opaque = [](const Vec4& c) { return c.w >= 1; };
   if (instance.color) return !is_opaque(*instance.color);
   constexpr std::size_t kGrain = 1 << 14;

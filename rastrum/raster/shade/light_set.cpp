@@ -14,7 +14,7 @@ namespace {
 
 struct Standpoint {
   Mat4d camera_to_world;
-  Vec3d origin;  ///< from which places are counted
+  Vec3d origin;  ///< places are relative to it
 };
 
 Vec3d unit(Vec3d v) {
@@ -50,7 +50,6 @@ void set_cone(const SpotLight& spot, LightTerm& term) {
   term.cone_offset = static_cast<float>(-outer * scale);
 }
 
-/// Row `row` of clip to world, as a function of pixels.
 PixelPlane plane(const Mat4d& clip_to_world, int row, int width, int height) {
   const double(&m)[4] = clip_to_world.m[row];
   return {static_cast<float>(m[3] - m[0] + m[1]), static_cast<float>(m[0] * 2 / width),
@@ -103,7 +102,7 @@ FrameLights::FrameLights(std::span<const Light> lights, std::span<const LightSha
   }
   std::size_t pictures = 0;
   for (const LightShadow& shadow : shadows) pictures += shadow.size();
-  maps_.reserve(pictures);  // they stay where they are
+  maps_.reserve(pictures);  // maps must not move
   for (std::size_t i = 0; i < lights.size(); ++i) {
     const Light& light = lights[i];
     const Vec3 full = light.color * light.intensity;
@@ -155,7 +154,7 @@ FrameLights::FrameLights(std::span<const Light> lights, std::span<const LightSha
 void FrameLights::add_environment(const EnvironmentLight& light, const Axes& axes, Vec3 color) {
   const environment_detail::Data& data = light.picture->data();
   surroundings_.push_back({data.map, Vec3(axes.x), Vec3(axes.y), Vec3(axes.z), color});
-  // Turned: a vector r of the picture is R r in the world, and a form S is R S Rᵀ.
+  // A vector r of the picture is R r in the world, and a form S is R S Rᵀ.
   const environment_detail::Gathered& g = data.gathered;
   GatheredLight& sum = set_.gathered;
   const double of_color[3] = {color.x, color.y, color.z};
@@ -164,7 +163,7 @@ void FrameLights::add_environment(const EnvironmentLight& light, const Axes& axe
   for (int c = 0; c < 3; ++c) {
     const Vec3d r = axes.x * g.rise[c].x + axes.y * g.rise[c].y + axes.z * g.rise[c].z;
     const double(&s)[6] = g.bend[c];
-    // Columns of S, halves of the mixed terms.
+    // Columns of S, with halves of the mixed terms.
     const Vec3d column[3] = {
         {s[0], s[3] / 2, s[5] / 2}, {s[3] / 2, s[1], s[4] / 2}, {s[5] / 2, s[4] / 2, s[2]}};
     const auto entry = [&](const Vec3d& a, const Vec3d& b) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The light that reaches a point from a frame's lights (LightSet), in lanes (lights-inl.hpp) or in
-// one float (lights_scalar.hpp): one body, so the same bits.
+// Light from a frame's lights (LightSet) at a point. One body in lanes (lights-inl.hpp) or one
+// float (lights_scalar.hpp), so the bits are the same.
 
-/// NaN becomes the bound.
+/// NaN gives the bound.
 RASTRUM_LANES F at_least(F a, float bound) {
   return choose(a > set(bound), a, set(bound));
 }
@@ -16,7 +16,7 @@ RASTRUM_LANES F clamp01(F a) {
 RASTRUM_LANES F on_plane(const PixelPlane& p, F px, F py, F depth) {
   return set(p.constant) + set(p.x) * px + set(p.y) * py + set(p.depth) * depth;
 }
-/// The place of the surface at (px, py), px, that has reversed depth `depth` there.
+/// The place of the surface with reversed depth `depth` at (px, py).
 RASTRUM_LANES V3 place_of(const LightSet& lights, F px, F py, F depth) {
   const F scale = set(1) / on_plane(lights.w, px, py, depth);
   return V3{on_plane(lights.x, px, py, depth), on_plane(lights.y, px, py, depth),
@@ -24,14 +24,14 @@ RASTRUM_LANES V3 place_of(const LightSet& lights, F px, F py, F depth) {
          scale;
 }
 
-/// Light from all around, as a surface with normal `n` gathers it.
+/// Light from all around that a surface with normal `n` gathers.
 RASTRUM_LANES V3 from_around(const LightSet& lights, const V3& n) {
   return set(lights.ambient) + set(lights.rise_x) * n.x + set(lights.rise_y) * n.y +
          set(lights.rise_z) * n.z;
 }
 
-/// The light that a matt surface with unit normal `n` gathers from all around. Where a small,
-/// bright lamp is opposite, the bands of environments fall below 0 and are cut there.
+/// Light that a matt surface with unit normal `n` gathers from all around. Opposite a small bright
+/// lamp the environments' bands fall below 0 and are clamped.
 RASTRUM_LANES V3 gathered(const LightSet& lights, const V3& n) {
   V3 sum = from_around(lights, n);
   if (lights.surroundings.empty()) return sum;
@@ -42,7 +42,7 @@ RASTRUM_LANES V3 gathered(const LightSet& lights, const V3& n) {
       set(g.bend[3]) * (n.x * n.y) + set(g.bend[4]) * (n.y * n.z) + set(g.bend[5]) * (n.z * n.x);
   return sum + V3{at_least(bands.x, 0), at_least(bands.y, 0), at_least(bands.z, 0)};
 }
-/// The light from direction `d` that a surface of a roughness in [0, 1] mirrors.
+/// Light from direction `d` that a surface mirrors; roughness in [0, 1].
 RASTRUM_LANES V3 mirrored_around(const LightSet& lights, const V3& d, F roughness) {
   V3 sum = from_around(lights, d);
   for (const Surrounding& s : lights.surroundings) sum = sum + lane_by_lane(s, d, roughness);
@@ -70,10 +70,9 @@ RASTRUM_LANES Incoming incoming(const LightTerm& t, const V3& place) {
 RASTRUM_LANES F on(const Vec4& r, const V3& p) {
   return set(r.x) * p.x + set(r.y) * p.y + set(r.z) * p.z + set(r.w);
 }
-/// The share of a light that reaches a place of a surface with unit normal `n`, in [0, 1]: the
-/// share of 4 × 4 texels that are not nearer to the light, weighed as a square of 3 × 3, in the
-/// first of `maps` that contains them all. A place outside of all maps is lit, and so is one that
-/// is not a number.
+/// The share of a light that reaches a place with unit normal `n`, in [0, 1]: the share of 4 × 4
+/// texels that are not nearer to the light, weighted as a square of 3 × 3, in the first of `maps`
+/// that contains them all. A place outside of all maps, or a NaN, is lit.
 RASTRUM_LANES F lit_share(std::span<const ShadowMap> maps, const V3& place, const V3& n) {
   const F one = set(1), zero = set(0);
   F share = one, asks = one;  // asks: 0 once a map has given the share
@@ -88,7 +87,7 @@ RASTRUM_LANES F lit_share(std::span<const ShadowMap> maps, const V3& place, cons
     const auto in_it = both(across_it, both(v >= one, v < last_v));
     const auto inside = both(in_it, asks > zero);
     if (none(inside)) continue;
-    // Lanes outside of the map read its first texel.
+    // Lanes outside read the map's first texel.
     const F safe_u = choose(inside, u, one), safe_v = choose(inside, v, one);
     const Whole x = truncated(safe_u), y = truncated(safe_v);
     const F fx = safe_u - as_float(x), fy = safe_v - as_float(y);
@@ -108,9 +107,8 @@ RASTRUM_LANES F lit_share(std::span<const ShadowMap> maps, const V3& place, cons
   }
   return share;
 }
-/// `radiance` less the part that is in shadow, at a surface with unit normal `n` on the side that
-/// is seen. The surface takes the part `n_l` of the light; where that is 0 the result does not
-/// matter.
+/// `radiance` without its shadowed part, at a surface with unit normal `n` on the visible side.
+/// `n_l`: the part of the light that it takes; at 0 the result does not matter.
 RASTRUM_LANES V3 unshadowed(const LightTerm& t, const V3& radiance, const V3& place, const V3& n,
                             F n_l) {
   if (t.shadow.empty() || none(n_l > set(0))) return radiance;

@@ -6,7 +6,7 @@
 #include <rastrum/raster/shade/light_set.hpp>
 
 namespace rastrum::raster::scalar_lane {
-// As kernels/lane_math-inl.hpp has them of lanes.
+// As in kernels/lane_math-inl.hpp.
 using Whole = int;
 RASTRUM_HD inline Whole truncated(F v) {
   return static_cast<int>(v);

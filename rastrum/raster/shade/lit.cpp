@@ -44,9 +44,8 @@ void shade_scalar(const LitShading& lit, const FrameGeometry& frame, const Visib
 }
 
 void set_normal_matrix(const Mat4d& object_to_world, float (&out)[3][3]) {
-  // The cofactors are the inverse transpose up to the determinant, whose sign and size do not
-  // matter: normals are normalized and turned to the viewer. They also exist where the matrix is
-  // singular.
+  // The cofactors are the inverse transpose up to the determinant. Its sign and size do not matter:
+  // normals are normalized and turned to the viewer. Singular matrices have cofactors, too.
   const auto& m = object_to_world.m;
   double cofactor[3][3];
   double largest = 0;
@@ -63,7 +62,7 @@ void set_normal_matrix(const Mat4d& object_to_world, float (&out)[3][3]) {
     for (int j = 0; j < 3; ++j) out[i][j] = static_cast<float>(cofactor[i][j] * scale);
 }
 
-/// The rays of any matrix with a centre of projection: the directions that rows x, y and w take to
+/// The rays of any matrix with a centre of projection: the directions that rows x, y and w map to
 /// (x_ndc, y_ndc, 1), by Cramer's rule.
 ViewRays rays_of(const Mat4d& clip, int width, int height) {
   struct Row {
@@ -109,7 +108,7 @@ ViewRays ViewRays::of(const Camera& camera, int width, int height) {
 
 LitDraw LitDraw::of(const InstanceView& instance) const {
   LitDraw own = *this;
-  // A view of the instance's own, which outlives the frame as the scene does.
+  // A view of the instance's own colour, which outlives the frame with the scene.
   if (instance.color) {
     own.colors = {.values = std::span(&*instance.color, 1), .per = Per::mesh};
     own.color_space = ColorSpace::display;

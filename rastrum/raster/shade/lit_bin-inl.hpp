@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The triangles of a bin whose triangles are small, set up for the lit shaders once for all of its
-// blocks (seen_bin.hpp): pixels then look their triangle up by its number.
+// Sets up the triangles of a bin of small triangles for the lit shaders, once for all blocks
+// (seen_bin.hpp). Pixels look their triangle up by number.
 #if defined(RASTRUM_RASTER_SHADE_LIT_BIN_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RASTRUM_RASTER_SHADE_LIT_BIN_INL_HPP
 #undef RASTRUM_RASTER_SHADE_LIT_BIN_INL_HPP
@@ -23,7 +23,7 @@ namespace {
 
 static_assert(SeenBin::kRoom % kLanes == 0);
 
-/// Puts a group's triangles, from number `first` on, where pixels look them up.
+/// Stores a group's triangles, from number `first` on, for look-up by pixels.
 HWY_INLINE void put_group(const LitLanes& t, std::size_t first, bool normals, bool colors,
                           SeenBin& seen) {
   const F32 d;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The numbers of the lit shaders, once for the scalar and the SIMD form.
+// Constants of the lit shaders.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ inline constexpr float kAmbient = 0.1F, kDiffuse = 0.8F, kSpecular = 0.3F;
 /// (0.4, 0.6, 1) / √1.52.
 inline constexpr Vec3 kLight{0.32444284F, 0.48666426F, 0.81110710F};
 
-/// A hash of the id (the finalizer of MurmurHash3) as an 8-bit colour, never black.
+/// A hash of the id (MurmurHash3's finalizer) as an 8-bit colour, never black.
 RASTRUM_HD constexpr Vec3 id_color(std::uint64_t id) {
   auto h = static_cast<std::uint32_t>(id ^ (id >> 32));
   h ^= h >> 16;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The arithmetic of the lit shaders, in lanes, pairs of them or one float: one body, so the same
-// bits, because where a normal stands at a right angle to the view the last one decides which side
-// it faces. Square roots and divisions are the exact ones: approximate reciprocals differ between
-// makers of the same instruction set.
-// The fixed light alone: lit_light.inl has that of a frame's lights, too.
+// The arithmetic of the lit shaders under the fixed light. One body in lanes, pairs of lanes or one
+// float gives the same bits: where a normal is perpendicular to the view the last bit decides which
+// side it faces. Square roots and divisions are exact, since approximate reciprocals differ between
+// CPU makers. lit_light.inl adds a frame's lights.
 
 /// Weights of the corners, up to a common positive factor.
 struct CornerWeights {
@@ -14,7 +13,7 @@ struct CornerWeights {
   }
 };
 
-/// Weights of a triangle that is not `exact`, at (px, py).
+/// Weights at (px, py) of a triangle that is not `exact`.
 RASTRUM_LANES CornerWeights weights_of(const LitTriangle& t, F px, F py) {
   const F dx = px - set(t.x0), dy = py - set(t.y0);
   const F l1 = set(t.p1) * dx + set(t.q1) * dy;
@@ -22,16 +21,16 @@ RASTRUM_LANES CornerWeights weights_of(const LitTriangle& t, F px, F py) {
   return {(set(1) - l1 - l2) * set(t.inv_w[0]), l1 * set(t.inv_w[1]), l2 * set(t.inv_w[2])};
 }
 
-/// max(v, 0), and 0 for NaN.
+/// NaN gives 0.
 RASTRUM_LANES F positive(F v) {
   return choose_or_zero(v > set(0), v);
 }
-/// Weights for a place that the triangle may not cover, where those of small triangles are wild.
+/// For a place that the triangle may not cover, where small triangles' weights are wild.
 RASTRUM_LANES CornerWeights inside(const CornerWeights& w) {
   return {positive(w.b0), positive(w.b1), positive(w.b2)};
 }
 
-/// Mixes the colours of corners a, b and c so that equal colours give exactly that colour.
+/// Equal colours give exactly that colour.
 RASTRUM_LANES V3 mixed_color(const CornerWeights& w, const V3& a, const V3& b, const V3& c) {
   const F share = set(1) / (w.b0 + w.b1 + w.b2);
   return a + ((b - a) * (w.b1 * share) + (c - a) * (w.b2 * share));
@@ -45,12 +44,12 @@ RASTRUM_LANES V3 unit(const V3& v) {
   return v * choose(square > set(0), set(1) / square_root(square), set(1));
 }
 
-/// The normal of the side that `v`, a unit direction to the viewer, sees.
+/// The normal on the side that `v`, a unit direction to the viewer, sees.
 RASTRUM_LANES V3 turned_to(const V3& v, const V3& facing) {
   const V3 back = -facing;
   return choose(dot(facing, v) < set(0), back, facing);
 }
-/// A normal of any length, as images show it: 0 where it has no direction.
+/// Turns a normal of any length into the image's: 0 where it has no direction.
 RASTRUM_LANES V3 seen_normal(const ViewRays& rays, F px, F py, const V3& normal) {
   const V3 v = unit(-(set(rays.d) + set(rays.dx) * px + set(rays.dy) * py));
   const V3 n = turned_to(v, unit(normal));
@@ -71,17 +70,17 @@ RASTRUM_LANES F highlight(const V3& n, const V3& v, const V3& l) {
   return s;
 }
 
-/// The direction to the viewer, of any length, at row `py` of a column with along_column() `along`.
+/// The direction to the viewer, of any length. `along`: along_column() of the column.
 RASTRUM_LANES V3 to_viewer(const V3& along, const ViewRays& rays, F py) {
   return -(along + set(rays.dy) * py);
 }
-/// The part of to_viewer that a column of the picture has in common.
+/// The part of to_viewer that a column shares.
 RASTRUM_LANES V3 along_column(const ViewRays& rays, F px) {
   return set(rays.d) + set(rays.dx) * px;
 }
 
-/// The light that goes to the viewer in the direction `view`, which may be of any length, as may
-/// the normal. Not for `id` and `wireframe`.
+/// Light towards the viewer in direction `view`. `view` and the normal may have any length. Not for
+/// `id` and `wireframe`.
 RASTRUM_LANES V3 light(Shader model, const V3& view, const V3& normal, const V3& base) {
   if (model == Shader::flat) return base;
   const V3 facing = unit(normal);
@@ -89,14 +88,13 @@ RASTRUM_LANES V3 light(Shader model, const V3& view, const V3& normal, const V3&
   if (model == Shader::normal) return facing * half + half;
   const V3 v = unit(view);
   const V3 n = turned_to(v, facing);
-  constexpr Vec3 to_light = kLight;  // a device has no address of the namespace's
+  constexpr Vec3 to_light = kLight;  // a device has no address of a namespace's constant
   const V3 l = set(to_light);
   const V3 lit = base * (set(kAmbient) + set(kDiffuse) * positive(dot(n, l)));
   if (model == Shader::lambert) return lit;
   const F specular = highlight(n, v, l) * set(kSpecular);
   return lit + V3{specular, specular, specular};
 }
-/// The same at (px, py), px.
 RASTRUM_LANES V3 light(Shader model, const ViewRays& rays, F px, F py, const V3& normal,
                        const V3& base) {
   return light(model, to_viewer(along_column(rays, px), rays, py), normal, base);

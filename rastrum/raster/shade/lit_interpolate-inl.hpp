@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Interpolates normals and colours of triangles at the pixels of a block. Where a block sees a few
-// triangles, each is interpolated at once for all of its pixels; else kLanes pixels at a time look
-// their triangles up, among those of the block or of the bin (VisibleBlock::bin).
+// Interpolates normals and colours of triangles at a block's pixels. If the block sees few
+// triangles, each is interpolated for all its pixels at once. Otherwise kLanes pixels at a time
+// look up their triangles, in the block's or in the bin's (VisibleBlock::bin).
 #if defined(RASTRUM_RASTER_SHADE_LIT_INTERPOLATE_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RASTRUM_RASTER_SHADE_LIT_INTERPOLATE_INL_HPP
 #undef RASTRUM_RASTER_SHADE_LIT_INTERPOLATE_INL_HPP
@@ -27,14 +27,14 @@ HWY_BEFORE_NAMESPACE();
 namespace rastrum::raster::HWY_NAMESPACE {
 namespace {
 
-/// Weights in float64 at pixels first to first + kLanes of a triangle that is `exact`.
+/// Float64 weights at pixels first to first + kLanes of an `exact` triangle.
 HWY_INLINE CornerWeights exact_weights(const WeightPlanes& planes, const VisibleBlock& block,
                                        std::size_t first) {
   const WidePoints at(block, first);
   return exact_weights(planes, at.x, at.y);
 }
 
-/// The triangles of the block, set up; `starts`: where its runs begin.
+/// The block's triangles, set up; `starts`: where runs begin.
 HWY_INLINE SeenLanes& seen_lanes(const LitScene& scene, const FrameGeometry& frame,
                                  const VisibleBlock& block, std::uint64_t starts,
                                  bool wants_normals, KeptTriangles& kept) {
@@ -53,8 +53,8 @@ HWY_INLINE SeenLanes& seen_lanes(const LitScene& scene, const FrameGeometry& fra
   return own;
 }
 
-/// Interpolates the normals and colours of triangle `t` at the pixels `own`. `before`: pixels that
-/// others have set. A vector without any of these may be written whole.
+/// Interpolates triangle `t` at the pixels `own`. `before`: pixels already set. A vector with none
+/// of these may be written whole.
 HWY_INLINE void interpolate_one(const LitTriangle& t, const VisibleBlock& block, std::uint64_t own,
                                 std::uint64_t before, bool wants_normals, bool wants_colors,
                                 bool cut, LitBlock& surface) {
@@ -78,13 +78,13 @@ HWY_INLINE void interpolate_one(const LitTriangle& t, const VisibleBlock& block,
   }
 }
 
-/// So many triangles of a block are interpolated one after the other, each at once for all of its
-/// pixels: cheaper than looking them up, and they are set up once a bin.
+/// Up to so many triangles of a block are interpolated one by one. That is cheaper than look-ups,
+/// and each is set up once a bin.
 constexpr std::size_t kFew = 4;
-/// A block with more runs of pixels in its rows mostly sees more triangles than kFew.
+/// A block with more runs of pixels mostly sees more triangles than kFew.
 constexpr int kFewRuns = 20;
 
-/// interpolate(), where the block sees no more than a few triangles; else returns false.
+/// interpolate() for few triangles; returns false for more.
 HWY_NOINLINE bool interpolate_few(const LitScene& scene, const FrameGeometry& frame,
                                   const VisibleBlock& block, bool wants_normals, bool wants_colors,
                                   bool cut, LitBlock& surface) {
@@ -104,7 +104,7 @@ HWY_NOINLINE bool interpolate_few(const LitScene& scene, const FrameGeometry& fr
   return true;
 }
 
-/// Puts the normals and colours of a triangle with exact weights at the pixels `own` of a vector.
+/// Stores normals and colours of an `exact` triangle at the pixels `own` of a vector.
 HWY_NOINLINE void put_exact(const LitTriangle& t, const VisibleBlock& block, std::size_t first,
                             std::uint64_t own, bool wants_normals, bool wants_colors, bool cut,
                             V3& n, V3& base) {
@@ -115,7 +115,7 @@ HWY_NOINLINE void put_exact(const LitTriangle& t, const VisibleBlock& block, std
   if (wants_colors) base = choose(mine, interpolated_color(t, w), base);
 }
 
-/// interpolate(), where the triangles of the bin have been set up.
+/// interpolate() with the bin's set-up triangles.
 HWY_NOINLINE void interpolate_bin(const LitScene& scene, const FrameGeometry& frame,
                                   const VisibleBlock& block, bool wants_normals, bool wants_colors,
                                   LitBlock& surface) {
@@ -159,7 +159,8 @@ HWY_NOINLINE void interpolate_bin(const LitScene& scene, const FrameGeometry& fr
   }
 }
 
-/// Normals (not normalized) and colours of the covered pixels. `cut`: triangles may not cover them.
+/// Normals, not normalized, and colours of the covered pixels. `cut`: triangles may miss the
+/// centres.
 HWY_NOINLINE void interpolate(const LitScene& scene, const FrameGeometry& frame,
                               const VisibleBlock& block, bool wants_normals, bool wants_colors,
                               bool cut, LitBlock& surface) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The arithmetic of the lit shaders with that of a frame's lights (lights.inl), in lanes
-// (lit_seen-inl.hpp) or in one float (lit_scalar.hpp).
+// The lit shaders under a frame's lights (lights.inl), in lanes (lit_seen-inl.hpp) or one float
+// (lit_scalar.hpp).
 #include <rastrum/raster/shade/lit_fixed.inl>
 
-/// light() by a frame's lights, of the surface at reversed depth `depth`: each shines as the fixed
-/// one, and on no surface that is turned away from it.
+/// light() with a frame's lights, for the surface at reversed depth `depth`. Each shines like the
+/// fixed one, and not on surfaces that face away from it.
 RASTRUM_LANES V3 light_by(const LightSet& lights, Shader model, const ViewRays& rays, F px, F py,
                           F depth, const V3& normal, const V3& base) {
   if (model != Shader::lambert && model != Shader::phong)
@@ -17,7 +17,7 @@ RASTRUM_LANES V3 light_by(const LightSet& lights, Shader model, const ViewRays& 
   for (const LightTerm& term : lights.terms) {
     const Incoming in = incoming(term, place);
     const F n_l = positive(dot(n, in.to_light));
-    // A light kit's back lights reach few surfaces that are seen.
+    // A light kit's back lights reach few visible surfaces.
     if (none(n_l > set(0))) continue;
     const V3 radiance = unshadowed(term, in.radiance, place, n, n_l);
     diffuse = diffuse + radiance * n_l;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The lit shaders of fragments that lie side by side by triangle (FragmentRuns): as many triangles
-// as there are lanes are set up at once, their fragments look them up a vector at a time, and all
-// of a batch are lit in full vectors, whatever their triangles and pixels. A vector reaches beyond
-// the last fragment of its group and is stored whole: the next writes over the rest.
+// The lit shaders for fragments sorted by triangle (FragmentRuns). kLanes triangles are set up at
+// once, their fragments look them up by vectors, and a whole batch is lit in full vectors. A vector
+// that reaches beyond its group's last fragment is stored whole; the next overwrites the rest.
 #if defined(RASTRUM_RASTER_SHADE_LIT_RUNS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RASTRUM_RASTER_SHADE_LIT_RUNS_INL_HPP
 #undef RASTRUM_RASTER_SHADE_LIT_RUNS_INL_HPP
@@ -28,17 +27,17 @@ HWY_BEFORE_NAMESPACE();
 namespace rastrum::raster::HWY_NAMESPACE {
 namespace {
 
-/// A batch of groups is lit in one go, once it has so many fragments; a group has at most
+/// A batch of groups is lit at once when it has so many fragments. A group has at most
 /// kMostOfGroup.
 constexpr std::size_t kBatch = 128, kMostOfGroup = 256;
 
-/// kLanes triangles and their fragments, of which each has the number of its triangle's lane.
+/// kLanes triangles and their fragments, each with its triangle's lane.
 struct RunGroup {
   std::size_t triangles = 0;
-  std::size_t batch = 0;  ///< its batch's first fragment
+  std::size_t batch = 0;  ///< first fragment of its batch
   std::size_t begin = 0, end = 0;
-  /// After this group the batch is lit up to here, in full vectors but for the last batch: the rest
-  /// begins the next one. 0: the batch goes on.
+  /// After this group the batch is lit up to here, in full vectors except for the last batch. The
+  /// rest begins the next batch. 0: the batch goes on.
   std::size_t lit_up_to = 0;
   bool wanted = false;
   std::uint64_t low[kLanes];
@@ -57,8 +56,8 @@ constexpr auto kBitsUpTo = [] {
   return table;
 }();
 
-/// Which of the 64 fragments from i on, i < count, are the first of a triangle; beyond the last one
-/// anything.
+/// Which of the 64 fragments from i < count on are the first of a triangle. Bits beyond the end are
+/// undefined.
 HWY_INLINE std::uint64_t firsts_from(const FragmentRuns& runs, std::size_t i) {
   const std::size_t word = i / 64, shift = i % 64;
   const std::uint64_t low = runs.firsts[word] >> shift;
@@ -75,7 +74,7 @@ HWY_INLINE bool any_wanted(const FragmentRuns& runs, std::size_t begin, std::siz
   return false;
 }
 
-/// The triangles behind those of `last`, as many as lanes.
+/// Takes the next triangles behind `last`, up to kLanes.
 HWY_INLINE void find_group(const FragmentRuns& runs, const RunGroup& last, RunGroup& group) {
   const std::size_t begin = last.end, most = std::min(runs.count, begin + kMostOfGroup);
   group.batch = last.lit_up_to != 0 ? last.lit_up_to : last.batch;
@@ -84,7 +83,7 @@ HWY_INLINE void find_group(const FragmentRuns& runs, const RunGroup& last, RunGr
   for (std::size_t end = begin; i < most && end == i;) {
     end = std::min(i + 64, most);
     std::uint64_t bits = firsts_from(runs, i) & ~std::uint64_t{0} >> (64 - (end - i));
-    if (i == begin) bits |= 1;  // of a triangle that is cut, too
+    if (i == begin) bits |= 1;  // also of a triangle that is split
     std::uint64_t rest = bits;
     const std::size_t triangles =
         std::min(static_cast<std::size_t>(parallel::popcount(bits)), kLanes - n);
@@ -94,7 +93,7 @@ HWY_INLINE void find_group(const FragmentRuns& runs, const RunGroup& last, RunGr
       group.low[n] = runs.keys[at] & kIdMask;
     }
     const std::size_t stop = rest != 0 ? i + static_cast<std::size_t>(std::countr_zero(rest)) : end;
-    // Numbers from 0 on: the sum of all bytes is right, whatever is carried on the way.
+    // Starts at 0: the sum of all bytes is right, whatever is carried between.
     std::uint64_t before = n - triangles - 1;
     for (std::size_t k = i; k < stop; k += 8, bits >>= 8) {
       const std::uint64_t run = kBitsUpTo[bits & 0xFF] + before * 0x0101010101010101U;
@@ -115,20 +114,19 @@ HWY_INLINE void find_group(const FragmentRuns& runs, const RunGroup& last, RunGr
   group.wanted = n != 0 && (runs.wanted == nullptr || any_wanted(runs, begin, i));
 }
 
-/// Finds where the corners of a group are read, and asks the cache for them.
 HWY_INLINE void prefetch_vertices(LitOfTriangle& finder, bool wants_normals, RunGroup& group) {
   const std::size_t n = group.triangles;
   find_all_sources(finder, group.low, n, (n + 3) / 4 * 4, wants_normals, group.from, group.lanes);
   prefetch_sources(group.from, n, wants_normals);
 }
 
-/// The surface at a batch's fragments; vectors reach beyond them.
+/// The surface at a batch's fragments; vectors may reach beyond.
 struct alignas(64) RunSurface {
   static constexpr std::size_t kSize = kBatch + kMostOfGroup + kLanes;
   float px[kSize], py[kSize];
   float n[3][kSize], base[3][kSize];
 
-  /// Moves the vector that begins at `at` to the front.
+  /// Moves the vector at `at` to the front.
   HWY_INLINE void begin_with(std::size_t at, bool wants_normals, bool colored) {
     const F32 d;
     const auto move = [&](float* values)
@@ -142,7 +140,7 @@ struct alignas(64) RunSurface {
   }
 };
 
-/// The centres of the pixels of kLanes fragments from i on.
+/// Pixel centres of kLanes fragments from i on.
 HWY_INLINE void find_places(const FragmentRuns& runs, std::size_t i, F& px, F& py) {
   const F32 d;
   const hn::Rebind<std::uint16_t, I32> d16;
@@ -166,12 +164,11 @@ HWY_INLINE V3 load_at(const float (&from)[3][RunSurface::kSize], std::size_t at)
   return {hn::LoadU(d, from[0] + at), hn::LoadU(d, from[1] + at), hn::LoadU(d, from[2] + at)};
 }
 
-/// Corner c of a lane's normals or colours.
 HWY_INLINE Vec3 corner(const float (&v)[3][3][kLanes], int c, std::size_t lane) {
   return {v[c][0][lane], v[c][1][lane], v[c][2][lane]};
 }
 
-/// Interpolates the fragments of a lane for whose triangle float32 is too little.
+/// Interpolates the fragments of a lane for which float32 is not exact enough.
 HWY_NOINLINE void interpolate_exact(const FrameGeometry& frame, const RunGroup& group,
                                     std::size_t lane, bool wants_normals, bool colored,
                                     RunSurface& out) {
@@ -205,7 +202,7 @@ HWY_INLINE void interpolate_group(const FrameGeometry& frame, const FragmentRuns
   for (std::size_t i = group.begin; i < group.end; i += kLanes) {
     const std::size_t at = i - group.batch;
     const I lane = hn::PromoteTo(I32{}, hn::LoadU(du8, group.lane_of + (i - group.begin)));
-    // Lanes beyond the group's end may be anything.
+    // Lanes beyond the group may be anything.
     const Lookup look{hn::IndicesFromVec(d, hn::And(lane, hn::Set(I32{}, int{kLanes} - 1)))};
     F px, py;
     find_places(runs, i, px, py);
@@ -241,7 +238,7 @@ HWY_INLINE void light_batch(const LitScene& scene, const FragmentRuns& runs, std
       c = light_by(*scene.lights, kModel, rays, px, py, depths(runs.keys + f), n, base);
     const V4 color = V4{c.x, c.y, c.z, set(1)} * set(alpha);
     if (runs.wanted == nullptr) {
-      // The next batch writes over the part that reaches beyond this one.
+      // The next batch overwrites what reaches beyond this one.
       hn::StoreInterleaved4(color.x, color.y, color.z, color.w, d, &colors[f].x);
       continue;
     }
@@ -278,8 +275,8 @@ void shade_runs_of(const LitScene& scene, const FrameGeometry& frame, const Frag
     }
     return;
   }
-  // While a group is shaded, the vertices of the next and the indices of the one behind it come
-  // from memory.
+  // While a group is shaded, the next one's vertices and the indices of the one after come from
+  // memory.
   RunGroup groups[3];
   LitOfTriangle finder(scene, frame);
   const auto find = [&](std::size_t g) HWY_ATTR {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The lit shaders but `id` and `wireframe` at one point, for the host and for devices.
+// The lit shaders except `id` and `wireframe` at one point, for host and devices.
 #pragma once
 
 #include <rastrum/raster/shade/lights_scalar.hpp>
@@ -13,7 +13,7 @@ namespace scalar_lane {
 #undef RASTRUM_LANES
 }  // namespace scalar_lane
 
-/// The weights of the corners of `t` at pixel (x, y), `from_centre` px from its centre.
+/// At pixel (x, y), `from_centre` px from its centre.
 [[nodiscard]] RASTRUM_HD inline scalar_lane::CornerWeights corner_weights(const LitTriangle& t,
                                                                           int x, int y,
                                                                           Vec2 from_centre) {
@@ -25,8 +25,7 @@ namespace scalar_lane {
           static_cast<float>(exact.b[2])};
 }
 
-/// SeenNormals::world of triangle `t` at the centre of pixel (x, y), which it may not cover where
-/// `cut`.
+/// SeenNormals::world of triangle `t` at the centre of pixel (x, y). `cut`: it may miss the centre.
 [[nodiscard]] inline Vec3 seen_normal(const ViewRays& rays, const LitTriangle& t, int x, int y,
                                       bool cut) {
   scalar_lane::CornerWeights w = corner_weights(t, x, y, {0, 0});
@@ -35,8 +34,8 @@ namespace scalar_lane {
                                   w.sum(t.normal));
 }
 
-/// The colour of triangle `t` at pixel (x, y), `from_centre` px from its centre. `depth`: its depth
-/// there, for the scene's own lights. `own_base`: stands for the base colour; null: there is none.
+/// The colour of triangle `t` at pixel (x, y), `from_centre` px from its centre. `depth` there is
+/// for the scene's lights. `own_base` replaces the base colour; null: it does not.
 [[nodiscard]] RASTRUM_HD inline Vec3 shade_lit(Shader model, const LitView& scene,
                                                const LitTriangle& t, int x, int y, Vec2 from_centre,
                                                float depth = 0, const Vec3* own_base = nullptr) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The triangles that a block sees, set up for shading a lane each: as fetch_triangle
-// (lit_triangle.hpp) does for one, but for kLanes at once, by the same operations in the same
-// order, so it gives the same bits. Pixels then look their triangle's lane up. Their light is
-// lit_light.inl.
+// Sets up the triangles that a block sees for shading, one a lane, with fetch_triangle's operations
+// and bits (lit_triangle.hpp). Pixels look up their triangle's lane. The light is lit_light.inl.
 #if defined(RASTRUM_RASTER_SHADE_LIT_SEEN_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RASTRUM_RASTER_SHADE_LIT_SEEN_INL_HPP
 #undef RASTRUM_RASTER_SHADE_LIT_SEEN_INL_HPP
@@ -37,7 +35,7 @@ namespace {
 #include <rastrum/raster/shade/lit_light.inl>
 #undef RASTRUM_LANES
 
-/// Calls use(constant of the shader) where light() makes its colours; returns whether it does.
+/// Calls use(constant of the shader) if is_light(); returns whether it is.
 template <class Use, std::size_t... kValues>
 HWY_INLINE bool with_light(Shader shader, const Use& use, std::index_sequence<kValues...>) {
   const auto matches = [&](auto value) HWY_ATTR {
@@ -63,11 +61,11 @@ struct LitLanes {
   HWY_ALIGN float inv_w[3][kLanes];
   HWY_ALIGN float normal[3][3][kLanes];  ///< corner, axis
   HWY_ALIGN float color[3][3][kLanes];
-  std::uint64_t exact;  ///< lanes whose weights are those of LitTriangle::planes
+  std::uint64_t exact;  ///< lanes with the weights of LitTriangle::planes
 };
 
-/// Triangles kept from one block to the next, which mostly sees other ones where they are small,
-/// and the same ones where they are large.
+/// Triangles kept from block to block: the next block mostly sees the same ones if they are large,
+/// and others if they are small.
 struct SeenLanes {
   static constexpr std::size_t kGroups = 64 / kLanes;
   SeenTriangles seen;
@@ -80,38 +78,38 @@ static_assert(sizeof(SeenLanes) <= sizeof(KeptTriangles::lanes));
 
 class LitOfTriangle;
 
-/// The sources of a group, and what the lit shaders know of it besides.
+/// The sources of a group, with what the lit shaders need besides.
 struct LitSources : CornerSources {
-  LitOfTriangle* finder;         ///< for attributes that are not read here
-  const std::uint64_t* low;      ///< the triangles
-  std::size_t count;             ///< how many; later lanes are unused
-  const LitDraw* turns[kLanes];  ///< of turned ones: whose matrix takes normals to the world
-  std::uint64_t turned;          ///< lanes whose normals are not in the world
+  LitOfTriangle* finder;  ///< for attributes not read here
+  const std::uint64_t* low;
+  std::size_t count;             ///< their number; later lanes are unused
+  const LitDraw* turns[kLanes];  ///< of turned lanes: its matrix takes normals to the world
+  std::uint64_t turned;          ///< lanes whose normals are not in world space
   std::uint64_t finished;        ///< lanes whose normals are safe
-  std::uint64_t flat;            ///< lanes whose normal is their plane's: they read positions
+  std::uint64_t flat;            ///< lanes with their plane's normal: they read positions
   bool wide;                     ///< positions are float64, three each
 };
 
-/// Finds the arrays of one triangle after another.
+/// Finds the arrays of triangles in sequence.
 class LitOfTriangle : DrawFinder<LitDraw> {
  public:
   HWY_INLINE LitOfTriangle(const LitScene& scene, const FrameGeometry& frame)
       : DrawFinder(frame), scene_(scene), view_(scene.view()) {}
 
-  /// Asks the cache for the indices of triangle `low`, which say what else is read.
+  /// Prefetches the indices of triangle `low`, which say what else is read.
   HWY_INLINE void prefetch(std::uint64_t low) {
     const std::uint64_t corner = 3 * find(low);
     prefetch_indices(corner);
     normals_.prefetch(corner);
   }
-  /// Finds where triangle `low` is read, and sets all that is not fetched in lanes.
+  /// Finds where triangle `low` is read, and sets what is not fetched in lanes.
   HWY_INLINE void find_sources(std::uint64_t low, bool wants_normals, std::size_t lane,
                                LitSources& from, LitLanes& out) {
     const std::uint64_t t = find(low);
     const bool in_lanes = !wants_normals || normals_.data != nullptr || is_flat_;
     if (!is_list_ || !in_lanes) return ask_draw(t, wants_normals, lane, from, out);
     if (wants_normals && is_flat_) {
-      // The positions of a group are all of one type.
+      // All positions of a group have one type.
       if (from.flat == 0) from.wide = is_wide_;
       if (from.wide != is_wide_) return ask_draw(t, wants_normals, lane, from, out);
     }
@@ -138,7 +136,7 @@ class LitOfTriangle : DrawFinder<LitDraw> {
     fetch_attributes(view_, *look_, t, vertex, false, triangle);
     set_corners(triangle.color, lane, out.color);
   }
-  /// Sets the normals of a triangle of which some are zero or not finite.
+  /// Sets the normals of a triangle where some are zero or not finite.
   HWY_NOINLINE void fill_in(std::uint64_t low, std::size_t lane, LitLanes& out) {
     const std::uint64_t t = find(low);
     std::uint32_t vertex[3];
@@ -149,7 +147,7 @@ class LitOfTriangle : DrawFinder<LitDraw> {
   }
 
  private:
-  /// Returns the number of triangle `low` in its draw.
+  /// The number of triangle `low` in its draw.
   HWY_INLINE std::uint64_t find(std::uint64_t low) {
     const std::uint64_t id = kIdMask - low;
     if (is_other(id)) look_at(frame_.draw_of(id));
@@ -215,11 +213,11 @@ class LitOfTriangle : DrawFinder<LitDraw> {
   const LitScene& scene_;
   const LitView view_;
   bool is_list_ = false;  ///< lanes can read it; else ask the draw
-  bool is_flat_ = false;  ///< without normals
-  bool is_wide_ = false;  ///< positions of float64
+  bool is_flat_ = false;  ///< the mesh has no normals
+  bool is_wide_ = false;  ///< float64 positions
   const LitDraw* turns_ = nullptr;
   PackedValues normals_;
-  std::uint64_t copy_ = 0;  ///< of a draw of copies: whose matrix and colour look_of_copy_ has
+  std::uint64_t copy_ = 0;  ///< the copy whose matrix and colour look_of_copy_ has
   LitDraw look_of_copy_;
 };
 
@@ -249,12 +247,11 @@ HWY_INLINE void fetch_weights(const LitSources& from, std::size_t n, LitLanes& o
   hn::Store(w2 / largest, d, out.inv_w[2]);
 }
 
-/// Vectors in float64.
 struct Wide3 {
   Wide x, y, z;
 };
 
-/// The three doubles at each place, transposed.
+/// The three doubles at each address, transposed.
 HWY_INLINE Wide3 load_transposed_wide(const float* const (&at)[kLanes]) {
   const hn::Full128<double> d2;
   const auto half = [&](std::size_t first, D& to_x, D& to_y, D& to_z) HWY_ATTR {
@@ -295,11 +292,11 @@ HWY_INLINE V3 face_normals(const Wide3& a, const Wide3& b, const Wide3& c) {
   return {scaled(nx), scaled(ny), scaled(nz)};
 }
 
-/// The normals of flat lanes; `n`: how many lanes are asked for.
+/// The normals of flat lanes; reads n lanes.
 HWY_INLINE V3 fetch_planes(LitSources& from, std::size_t n) {
   const auto one = static_cast<std::size_t>(std::countr_zero(from.flat));
   for (std::size_t i = 0; i < kLanes; ++i)
-    if ((from.flat >> i & 1) == 0)  // their result is not used
+    if ((from.flat >> i & 1) == 0)  // the result is unused
       for (int c = 0; c < 3; ++c) from.position[c][i] = from.position[c][one];
   const auto corner = [&](int c) HWY_ATTR {
     if (from.wide) return load_transposed_wide(from.position[c]);
@@ -309,13 +306,13 @@ HWY_INLINE V3 fetch_planes(LitSources& from, std::size_t n) {
   return face_normals(corner(0), corner(1), corner(2));
 }
 
-/// Corner `c` of the normals, in the world. Returns the lanes where it is zero or not finite.
+/// Corner `c` of the normals, in world space. Returns the lanes where it is zero or not finite.
 HWY_INLINE std::uint64_t fetch_normals(const LitSources& from, std::size_t n, const V3& planes,
                                        int c, LitLanes& out) {
   const V4 v = load_transposed(from.normal[c], n);
   V3 normal = choose(mask_of(from.flat), planes, V3{v.x, v.y, v.z});
   const F ax = hn::Abs(normal.x), ay = hn::Abs(normal.y), az = hn::Abs(normal.z);
-  // safe_normal leaves these as they are; all comparisons fail for NaN.
+  // safe_normal leaves these unchanged; NaN fails all comparisons.
   const F most = set(1e15F);
   const auto bounded = hn::And(ax < most, hn::And(ay < most, az < most));
   const auto safe = hn::And(bounded, max_of(ax, max_of(ay, az)) > set(1e-15F));
@@ -344,8 +341,8 @@ HWY_INLINE std::uint64_t fetch_normals(const LitSources& from, std::size_t n, co
   return nothing;
 }
 
-/// Finds where triangles low[0, n) are read, 0 < n ≤ kLanes, and their colours. Lanes behind them,
-/// up to `end`, read what the first one reads.
+/// Finds where triangles low[0, n), 0 < n ≤ kLanes, are read, and their colours. Lanes from n to
+/// `end` read the first triangle.
 HWY_INLINE void find_all_sources(LitOfTriangle& finder, const std::uint64_t* low, std::size_t n,
                                  std::size_t end, bool wants_normals, LitSources& from,
                                  LitLanes& out) {
@@ -362,7 +359,7 @@ HWY_INLINE void find_all_sources(LitOfTriangle& finder, const std::uint64_t* low
     }
 }
 
-/// Asks the cache for what fetch_triangles reads.
+/// Prefetches what fetch_triangles reads.
 HWY_INLINE void prefetch_sources(const LitSources& from, std::size_t n, bool wants_normals) {
   for (int c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < n; ++i) {
@@ -374,7 +371,6 @@ HWY_INLINE void prefetch_sources(const LitSources& from, std::size_t n, bool wan
     }
 }
 
-/// Sets up the n triangles of `from`.
 HWY_INLINE void fetch_triangles(LitSources& from, std::size_t n, bool wants_normals,
                                 LitLanes& out) {
   fetch_weights(from, n, out);
@@ -396,7 +392,6 @@ HWY_INLINE void fetch_triangles(LitOfTriangle& finder, const std::uint64_t* low,
   fetch_triangles(from, n, wants_normals, out);
 }
 
-/// Looks up what the lit shaders know of triangles' lanes.
 struct Lookup : FloatLookup {
   /// weights_of.
   HWY_INLINE CornerWeights weights(const LitLanes& t, F px, F py) const {
@@ -414,7 +409,7 @@ struct Lookup : FloatLookup {
   }
 };
 
-/// Weights in float64, rounded, of one triangle at kLanes points.
+/// Float64 weights, rounded, of one triangle at kLanes points.
 HWY_INLINE CornerWeights exact_weights(const WeightPlanes& planes, const Wide& x, const Wide& y) {
   Wide b[3];
   shares_at(planes, x, y, b);
@@ -426,7 +421,7 @@ HWY_INLINE WeightPlanes planes_of(const FrameGeometry& frame, std::uint64_t id) 
   return weight_planes(frame, draw, id - draw.first_id);
 }
 
-/// Depths of kLanes pixels; of those that hold nothing they may be anything.
+/// Depths of kLanes pixels; undefined where a pixel has no surface.
 HWY_INLINE F depths(const std::uint64_t* keys) {
   HWY_ALIGN float depth[kLanes];
   for (std::size_t i = 0; i < kLanes; ++i) depth[i] = depth_of_key(keys[i]);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The lit shaders in lanes, compiled once per instruction set. Normals and colours of a block are
-// interpolated first (lit_interpolate-inl.hpp) and then lit, kLanes at a time. A pixel's bits do
-// not depend on its neighbours. The arithmetic is lit_light.inl's, which the scalar form shares.
+// The lit shaders in lanes, compiled once per instruction set. A block's normals and colours are
+// interpolated (lit_interpolate-inl.hpp) and then lit, kLanes at a time. A pixel's bits do not
+// depend on its neighbours. The arithmetic is lit_light.inl, as in the scalar form.
 
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
@@ -34,7 +34,6 @@ namespace pairs {
 #undef RASTRUM_LANES
 }  // namespace pairs
 
-/// Takes the colours of kLanes pixels, from `first` on.
 struct ToBlock {
   BlockColors& colors;
 
@@ -46,7 +45,6 @@ struct ToBlock {
   }
   HWY_INLINE void nothing(std::size_t /*first*/) const {}
 };
-/// The same, to a picture of 8 bits.
 struct ToPixels {
   BlockPixels to;
   Rgba8 empty;
@@ -77,7 +75,7 @@ struct ToPixels {
 };
 
 /// Lights pixels [first, first + 2 kLanes) by the fixed light, two vectors side by side; `along`:
-/// along_column of pixels' centres.
+/// along_column of the centres.
 template <Shader kModel, class Put>
 HWY_INLINE void light_pair(const ViewRays& rays, const V3& along, const VisibleBlock& block,
                            const LitBlock& surface, bool colored, std::size_t first,
@@ -97,14 +95,14 @@ HWY_INLINE void light_pair(const ViewRays& rays, const V3& along, const VisibleB
   put(first + kLanes, block.covered >> (first + kLanes) & kAll, {c.x.b, c.y.b, c.z.b});
 }
 
-/// Lights what `surface` holds, by the fixed light or those of `lights`; without `colored` it has
-/// the default base colour.
+/// Lights `surface` by the fixed light or by `lights`. Without `colored` it has the default base
+/// colour.
 template <Shader kModel, bool kFixed, class Put>
 HWY_NOINLINE void light_rows(const ViewRays& rays, const LightSet* lights,
                              const VisibleBlock& block, const LitBlock& surface, bool colored,
                              const Put& put) {
   constexpr std::uint64_t kAll = (std::uint64_t{1} << kLanes) - 1;
-  // Two vectors want some thirty registers.
+  // Two vectors need some thirty registers.
   constexpr bool kPairs = kFixed && kLanes == 16;
   const V3 along = along_column(rays, Points(block, 0).px);
   V3 base = set(kDefaultBase);
@@ -143,8 +141,8 @@ HWY_INLINE void light_block(const ViewRays& rays, const LightSet* lights, const 
 }
 
 /// Two loops: lighting is one long chain of square roots and divisions, and the processor overlaps
-/// several such chains only where little else stands between them. `own_base`: `surface` holds the
-/// base colours.
+/// several chains only where little else is between them. `own_base`: `surface` has the base
+/// colours.
 template <Shader kModel, class Put>
 HWY_INLINE void shade_block(const LitScene& scene, const FrameGeometry& frame,
                             const VisibleBlock& block, LitBlock& surface, bool own_base,

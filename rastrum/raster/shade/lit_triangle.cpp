@@ -21,7 +21,7 @@ void prefetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::u
   const bool flat = mesh.normals.empty();
   const ArrayView<Vec3>& read = flat ? mesh.positions : mesh.normals.values;
   if (!read.is_packed() || !(flat || mesh.normals.indices.empty())) return;
-  // A mesh that is drawn many times is in the cache.
+  // The cache has a mesh that is drawn many times.
   if (draw.is_copied()) return;
   for (const std::uint32_t v : vertex) __builtin_prefetch(read.data() + v);
 }

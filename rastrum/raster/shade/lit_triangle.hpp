@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A triangle as the lit shaders know it: set up once in float32, kept while a bin is shaded.
+// A triangle for the lit shaders, set up once in float32 and kept while a bin is shaded.
 //
 // float32 weights lose about |longest edge|² / |twice the area| ulps to cancellation, so thin and
-// clipped triangles are interpolated in float64 (interpolate.hpp) instead.
+// clipped triangles are interpolated in float64 (interpolate.hpp).
 #pragma once
 
 #include <algorithm>
@@ -18,9 +18,8 @@
 
 namespace rastrum::raster {
 
-/// A triangle, set up for shading.
 struct LitTriangle {
-  std::uint64_t low;  ///< of the key; 0: none yet
+  std::uint64_t low;  ///< of the key; 0: none
   bool exact;         ///< interpolate with `planes`
   float x0, y0;       ///< λ₁ = p1 (x − x0) + q1 (y − y0), λ₂ alike
   float p1, q1, p2, q2;
@@ -31,16 +30,16 @@ struct LitTriangle {
 };
 
 RASTRUM_HD inline Vec3 LitView::base_color(const LitDraw& draw, std::size_t face) const {
-  constexpr Vec3 default_base = kDefaultBase;  // a device has no address of the namespace's
+  constexpr Vec3 default_base = kDefaultBase;  // a device has no address of a namespace's constant
   if (materials.empty()) return draw.colors.empty() ? default_base : Vec3{1, 1, 1};
   return materials[draw.face_materials.empty() ? draw.material : draw.face_materials[face]];
 }
 
 namespace lit_detail {
 
-/// Up to this ratio of squared longest edge to twice the area float32 weights are as good as 1e-5.
+/// Up to this ratio of squared longest edge to twice the area float32 weights are good to 1e-5.
 inline constexpr float kThin = 32.0F;
-/// Below this ratio of the corners' 1 / w a far corner's weight drowns in the near one's rounding.
+/// Below this ratio of corners' 1 / w a far corner's weight is lost in the near one's rounding.
 inline constexpr float kSteep = 1e-4F;
 
 template <class Geometry>
@@ -62,7 +61,7 @@ RASTRUM_HD void fetch_weights(const Geometry& frame, const Draw& draw,
   const float extent = (e1x * e1x + e1y * e1y) + (e2x * e2x + e2y * e2y);
   const float smallest = std::min({v0.inv_w, v1.inv_w, v2.inv_w});
   const float largest = std::max({v0.inv_w, v1.inv_w, v2.inv_w});
-  // Up to 16 px every product of edges is exact, however thin the triangle.
+  // Up to 16 px every product of edges is exact, even in a thin triangle.
   const bool thin = extent > 128.0F && !(extent < kThin * std::abs(det));
   out.exact = thin || !(smallest > kSteep * largest);
   if (out.exact) {
@@ -76,7 +75,7 @@ RASTRUM_HD void fetch_weights(const Geometry& frame, const Draw& draw,
   out.q1 = -e2x * inv_det;
   out.p2 = -e1y * inv_det;
   out.q2 = e1x * inv_det;
-  // Only ratios count; far away 1 / w is so small that squares of normals would underflow.
+  // Only ratios matter. Far away 1 / w is so small that squares of normals would underflow.
   out.inv_w[0] = v0.inv_w / largest;
   out.inv_w[1] = v1.inv_w / largest;
   out.inv_w[2] = v2.inv_w / largest;
@@ -84,7 +83,7 @@ RASTRUM_HD void fetch_weights(const Geometry& frame, const Draw& draw,
 
 }  // namespace lit_detail
 
-/// The display values at the corners of a triangle of a mesh that has colours.
+/// Display values at a triangle's corners, for a draw that has colours.
 RASTRUM_HD inline void display_colors(const LitDraw& lit, const TrianglePlace& place,
                                       const std::uint32_t (&vertex)[3], Vec4 (&out)[3]) {
   lit.colors.corners(place, vertex, out);
@@ -92,7 +91,7 @@ RASTRUM_HD inline void display_colors(const LitDraw& lit, const TrianglePlace& p
     for (Vec4& c : out) c = display_value(c);
 }
 
-/// Sets the normals and colours of triangle `t` of a mesh, where they are wanted.
+/// Sets the normals and colours of triangle `t` that are wanted.
 RASTRUM_HD inline void fetch_attributes(const LitView& scene, const LitDraw& lit, std::uint64_t t,
                                         const std::uint32_t (&vertex)[3], bool wants_normals,
                                         LitTriangle& out) {
@@ -114,7 +113,7 @@ RASTRUM_HD inline void fetch_attributes(const LitView& scene, const LitDraw& lit
     out.color[c] = {base.x * color[c].x, base.y * color[c].y, base.z * color[c].z};
 }
 
-/// Sets up the triangle whose keys end in `low`, of `draw`.
+/// Sets up the triangle of `draw` whose keys end in `low`.
 template <class Geometry>
 RASTRUM_HD void fetch_triangle(const LitView& scene, const LitDraw& lit, const Geometry& frame,
                                const Draw& draw, std::uint64_t low, bool wants_normals,
@@ -146,16 +145,16 @@ RASTRUM_HD void fetch_triangle(const LitView& scene, const Geometry& frame, std:
 void fetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::uint64_t low,
                     bool wants_normals, LitTriangle& out);
 
-/// Asks the cache for what fetch_triangle reads at random.
+/// Prefetches what fetch_triangle reads at random.
 void prefetch_triangle(const LitScene& scene, const FrameGeometry& frame, std::uint64_t id,
                        bool wants_normals) noexcept;
 
-/// The triangles of a bin that were seen last, by their ids' low bits: pixels and blocks beside
-/// mostly meet the same ones again. All 0: none.
+/// The last triangles of a bin, by their ids' low bits: neighbouring pixels and blocks mostly see
+/// the same ones. All 0: none.
 struct KeptTriangles {
   static constexpr std::size_t kCount = 256;
   LitTriangle triangles[kCount];
-  alignas(64) std::byte lanes[9216];  ///< those of the last block (lit_seen-inl.hpp)
+  alignas(64) std::byte lanes[9216];  ///< of the last block (lit_seen-inl.hpp)
 
   void clear() {
     for (LitTriangle& t : triangles) t.low = 0;

@@ -20,7 +20,7 @@ namespace {
 struct TextureReference {
   std::int32_t texture;
   TexelUse use;
-  bool alpha;  ///< alpha comes from it
+  bool alpha;  ///< it has alpha
 };
 
 std::array<TextureReference, 6> references(const Material& m) {
@@ -70,7 +70,7 @@ MaterialDraw MaterialDraw::of(const InstanceView& instance) const {
 
 MaterialScene::MaterialScene(const SceneView& scene, const Camera& camera, int width, int height,
                              const TextureSet& textures) {
-  // The normal matrices are those of the lit shaders.
+  // The normal matrices are the lit shaders'.
   const LitScene lit(scene, camera, width, height);
   rays = lit.rays;
   draws.resize(lit.draws.size());

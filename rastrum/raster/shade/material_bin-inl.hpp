@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The triangles of a bin whose triangles are small, set up for materials once for all of its blocks
-// (seen_bin.hpp): pixels then look their triangle up by its number.
+// Sets up the triangles of a bin of small triangles for materials, once for all blocks
+// (seen_bin.hpp). Pixels look their triangle up by number.
 #if defined(RASTRUM_RASTER_SHADE_MATERIAL_BIN_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RASTRUM_RASTER_SHADE_MATERIAL_BIN_INL_HPP
 #undef RASTRUM_RASTER_SHADE_MATERIAL_BIN_INL_HPP
@@ -21,7 +21,7 @@ HWY_BEFORE_NAMESPACE();
 namespace rastrum::raster::HWY_NAMESPACE {
 namespace {
 
-/// Asks the cache for what set_triangles reads of triangles that are simple to read.
+/// Prefetches what set_triangles reads of simple triangles.
 HWY_INLINE void prefetch_sources(const MaterialSources& from, std::size_t n, bool normals) {
   for (int c = 0; c < 3; ++c)
     for (std::size_t i = 0; i < n; ++i) {
@@ -31,7 +31,7 @@ HWY_INLINE void prefetch_sources(const MaterialSources& from, std::size_t n, boo
     }
 }
 
-/// Puts a group's n triangles, from number `first` on, where pixels look them up.
+/// Stores a group's n triangles, from number `first` on, for look-up by pixels.
 HWY_INLINE void store(const MaterialView& scene, const MaterialLanes& t, std::size_t first,
                       std::size_t n, SeenBin& seen) {
   const F32 d;
@@ -70,7 +70,7 @@ HWY_INLINE void store(const MaterialView& scene, const MaterialLanes& t, std::si
     seen.material[first + i] = static_cast<std::uint32_t>(t.material[i] - scene.materials.data());
 }
 
-/// Sets up the triangles that rows of blocks see from `row` to seen.end_row, which it sets.
+/// Sets up the triangles of rows of blocks from `row` to seen.end_row, which it sets.
 void see_bin(const MaterialView& scene, const FrameGeometry& frame, const BinSurface& bin, int row,
              SeenBin& seen) noexcept {
   struct Group {
@@ -94,7 +94,7 @@ void see_bin(const MaterialView& scene, const FrameGeometry& frame, const BinSur
       });
 }
 
-/// Looks up in the bin the triangles of kLanes pixels, whose numbers are at `place`.
+/// Looks up in the bin the triangles of kLanes pixels, by the numbers at `place`.
 struct BinLookup {
   const SeenBin& bin;
   const std::uint16_t* place;
@@ -139,12 +139,11 @@ struct BinLookup {
   struct WideHalf {
     D first, second;
   };
-  /// The pairs of kHalf pixels.
   static HWY_INLINE WideHalf half(const double* pairs, const std::uint16_t* place) {
     const hn::Full128<double> d;
     const auto pair = [&](std::size_t i)
                           HWY_ATTR { return hn::Load(d, pairs + std::size_t{place[i]} * 2); };
-    // Every second pixel, so that pairs come out in order where blocks of 128 bits are interleaved.
+    // Every second pixel, so that interleaving blocks of 128 bits puts pairs in order.
     const auto seconds = [&](std::size_t i) HWY_ATTR {
 #if RASTRUM_LANE_COUNT == 16
       const hn::Half<F64> two;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The numbers of the material shader; material.hpp says what they are.
+// Constants of the material shader (material.hpp).
 #pragma once
 
 #include <rastrum/vec.hpp>
@@ -15,6 +15,6 @@ inline constexpr float kSky = 0.3F, kGround = 0.12F;
 inline constexpr float kSkyMean = (kSky + kGround) / 2, kSkySlope = (kSky - kGround) / 2;
 inline constexpr float kDielectricF0 = 0.04F;  ///< index of refraction 1.5
 inline constexpr float kMinRoughness = 0.045F;
-inline constexpr float kMostLight = 65504;  ///< of a colour that is blended: no infinities
+inline constexpr float kMostLight = 65504;  ///< of a blended colour: no infinities
 
 }  // namespace rastrum::raster

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The lights of the material shader (material.hpp has the formula), in lanes
-// (material_light-inl.hpp) or in one float (material_scalar.hpp): one body, so the same bits.
+// The lights of the material shader (formula in material.hpp). One body in lanes
+// (material_light-inl.hpp) or one float (material_scalar.hpp), so the bits are the same.
 
 RASTRUM_LANES F mix(F a, F b, F t) {
   return a + (b - a) * t;
@@ -13,7 +13,7 @@ RASTRUM_LANES F pow5(F a) {
   return a2 * a2 * a;
 }
 
-/// The value that a shader returns: a display value, or finite linear light.
+/// The result of a shader: a display value, or finite linear light.
 RASTRUM_LANES F written(F linear, bool as_linear) {
   return as_linear ? at_most(at_least(linear, 0), kMostLight) : srgb_from_linear(linear);
 }
@@ -27,10 +27,10 @@ struct Reflectance {
 };
 
 struct Reflected {
-  V3 share;  ///< of what arrives
-  F n_l;     ///< how much of it does
+  V3 share;  ///< of the arriving light
+  F n_l;     ///< how much of it arrives
 };
-/// Light of one direction, reflected towards v; n·l ≤ 0 gives nothing.
+/// Light from one direction, reflected towards v; n·l ≤ 0 gives nothing.
 RASTRUM_LANES Reflected reflect(const Reflectance& s, const V3& n, const V3& v, F nv, const V3& l) {
   const V3 sum = v + l;
   const V3 half = sum * (set(1) / square_root(at_least(dot(sum, sum), 1e-12F)));
@@ -45,7 +45,7 @@ RASTRUM_LANES Reflected reflect(const Reflectance& s, const V3& n, const V3& v, 
   const V3 diffuse = s.diffuse * (one - f);
   return {diffuse + f * (pi_d * visibility), nl};
 }
-/// The same for a white light.
+/// For a white light.
 RASTRUM_LANES V3 reflect(const Reflectance& s, const V3& n, const V3& v, F nv, Vec3 to_light,
                          float radiance) {
   const Reflected r = reflect(s, n, v, nv, set(to_light));
@@ -57,7 +57,6 @@ RASTRUM_LANES V3 hemisphere(const V3& diffuse, const V3& specular, F normal_y, F
          specular * (set(kSkyMean) + set(kSkySlope) * mirrored_y);
 }
 
-/// A surface as the lights need it.
 struct LitSurface {
   V3 base;
   V3 normal;  ///< unit, towards the viewer
@@ -65,13 +64,13 @@ struct LitSurface {
   V3 emission;
 };
 
-/// The values that all lights of a point have in common.
+/// Values that all lights at a point share.
 struct SeenSurface {
   V3 n, v;
   F facing;  ///< n·v
-  F nv;      ///< the same, above 0
+  F nv;      ///< the same, kept above 0
   Reflectance surface;
-  V3 f;  ///< of light from all around
+  V3 f;  ///< Fresnel term of light from all around
   F roughness;
 };
 RASTRUM_LANES SeenSurface seen_from(const ViewRays& rays, const LitSurface& s, F px, F py) {
@@ -97,7 +96,8 @@ RASTRUM_LANES SeenSurface seen_from(const ViewRays& rays, const LitSurface& s, F
 
 /// Linear light at (px, py), px.
 RASTRUM_LANES V3 light(const ViewRays& rays, const LitSurface& s, F px, F py) {
-  constexpr Vec3 key = kKeyLight, fill = kFillLight;  // a device has no address of the namespace's
+  constexpr Vec3 key = kKeyLight,
+                 fill = kFillLight;  // a device has no address of a namespace's constant
   const SeenSurface p = seen_from(rays, s, px, py);
   const V3 direct = reflect(p.surface, p.n, p.v, p.nv, key, kKeyRadiance) +
                     reflect(p.surface, p.n, p.v, p.nv, fill, kFillRadiance);
@@ -105,7 +105,7 @@ RASTRUM_LANES V3 light(const ViewRays& rays, const LitSurface& s, F px, F py) {
   return direct + ambient * s.occlusion + s.emission;
 }
 
-/// The same by a frame's lights, of the surface at reversed depth `depth`.
+/// By a frame's lights, for the surface at reversed depth `depth`.
 RASTRUM_LANES V3 light_by(const LightSet& lights, const ViewRays& rays, const LitSurface& s, F px,
                           F py, F depth) {
   const SeenSurface p = seen_from(rays, s, px, py);

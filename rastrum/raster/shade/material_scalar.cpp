@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Materials over the blocks of the host, fragment by fragment: the plain form that the lanes are
-// held equal to, and the one that devices have.
+// Materials over blocks on the host, fragment by fragment: the plain form that the lanes must
+// equal. Devices have the same form.
 #include <rastrum/raster/shade/material_scalar.hpp>
 
 #include <algorithm>
@@ -11,7 +11,6 @@
 namespace rastrum::raster {
 namespace {
 
-/// Calls f(bit, x, y, from_centre) for the samples of `mask`.
 template <class F>
 void for_each_sample(std::uint64_t mask, int x0, int y0, const ShadingPoints* points, F&& f) {
   for (; mask != 0; mask &= mask - 1) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The material shader and alpha at one fragment, for the scalar instruction set and for devices.
-// Its lights are material_light.inl, which material_simd.cpp shares; the rest has the same
-// operations in the same order there, so the same bits.
+// The lights are material_light.inl, shared with material_simd.cpp, which does the rest with the
+// same operations, order and bits.
 #pragma once
 
 #include <cmath>
@@ -15,7 +15,7 @@
 
 namespace rastrum::raster {
 
-/// Where a triangle is shaded: at pixel (x, y), `from_centre` px from its centre.
+/// Where a triangle is shaded: in pixel (x, y), `from_centre` px from its centre.
 struct MaterialPoint {
   float x, y;  ///< px
   CornerShares shares;
@@ -38,7 +38,6 @@ namespace scalar_lane {
 
 namespace material_detail {
 
-/// The textures of a material at a point.
 struct Sampler {
   Coordinate u{}, v{};
 
@@ -60,7 +59,7 @@ struct Sampler {
   }
 };
 
-/// The base colour before it is lit, in linear light.
+/// The base colour in linear light, not lit.
 RASTRUM_HD inline Vec3 base_color(const MaterialTriangle& t, const BoundMaterial& m,
                                   const MaterialPoint& at, const Sampler& textures) {
   Vec3 base{m.base.x, m.base.y, m.base.z};
@@ -96,7 +95,7 @@ RASTRUM_HD inline Vec3 normal(const MaterialView& scene, const MaterialTriangle&
   return TangentFrame(t).bend(n, map.r, map.g, map.b, m.normal_scale * side);
 }
 
-/// A fragment's own alpha, which a mask tests and which blends.
+/// A fragment's own alpha, for masks and blending.
 RASTRUM_HD inline float own_alpha(const MaterialTriangle& t, const BoundMaterial& m,
                                   const MaterialPoint& at) {
   const auto& colors = t.draw.colors;
@@ -113,9 +112,8 @@ RASTRUM_HD inline float own_alpha(const MaterialTriangle& t, const BoundMaterial
 
 }  // namespace material_detail
 
-/// The colour of triangle `t` at a point, opaque: a display value or linear light. `depth`: its
-/// depth there, for the scene's own lights. `own_base`: stands for the base colour; null: there is
-/// none.
+/// The opaque colour of triangle `t` at a point, a display value or linear light. `depth` there is
+/// for the scene's lights. `own_base` replaces the base colour; null: it does not.
 [[nodiscard]] RASTRUM_HD inline Vec3 shade_material(const MaterialView& scene,
                                                     const MaterialTriangle& t,
                                                     const MaterialPoint& at, bool linear,
@@ -149,7 +147,7 @@ RASTRUM_HD inline float own_alpha(const MaterialTriangle& t, const BoundMaterial
   return scalar_lane::written(scalar_lane::light(scene.rays, s, at.x, at.y), linear);
 }
 
-/// The base colour of a fragment and its own alpha: linear light, straight.
+/// A fragment's base colour and own alpha: linear light, straight.
 template <class Geometry>
 [[nodiscard]] Vec4 material_albedo(const MaterialView& scene, const Geometry& frame,
                                    const Fragment& f) {
@@ -157,14 +155,13 @@ template <class Geometry>
   const MaterialTriangle t(scene, frame, draw, f.id);
   const BoundMaterial& m = scene.material_of(t.draw, t.index);
   MaterialPoint at(t.planes, f.x, f.y, f.from_centre);
-  // The fragment's weights are cut to [0, 1] where the triangle does not cover the place.
+  // The fragment's weights are clamped to [0, 1], for a triangle that misses the place.
   at.shares.weight1 = static_cast<float>(f.weights.b[1]);
   at.shares.weight2 = static_cast<float>(f.weights.b[2]);
   const Vec3 base = material_detail::base_color(t, m, at, material_detail::Sampler(t, at));
   return {base.x, base.y, base.z, material_detail::own_alpha(t, m, at)};
 }
 
-/// Whether a mask's material leaves the fragment of primitive `id` at (x, y) standing.
 template <class Geometry>
 [[nodiscard]] RASTRUM_HD bool passes_mask(const MaterialView& scene, const Geometry& frame,
                                           std::uint64_t id, int x, int y, Vec2 from_centre) {
@@ -177,7 +174,6 @@ template <class Geometry>
            m.alpha_cutoff);
 }
 
-/// The alpha (alpha.hpp) of a fragment of primitive `id` at (x, y).
 template <class Geometry>
 [[nodiscard]] RASTRUM_HD float alpha_at(const MaterialView& scene, const Geometry& frame,
                                         std::uint64_t id, int x, int y, Vec2 from_centre,

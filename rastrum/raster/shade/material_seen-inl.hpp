@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The triangles that a block sees, set up for materials a lane each: as MaterialTriangle
-// (material_triangle.hpp) and its kin do for one, but for kLanes at once, by the same operations in
-// the same order, so it gives the same bits. Pixels then look their triangle's lane up. Triangles
-// whose arrays lanes cannot read (PackedValues), copies and clipped triangles are set up one by
-// one.
+// Sets up the triangles that a block sees for materials, one a lane, with the operations and bits
+// of MaterialTriangle and the like (material_triangle.hpp). Pixels look up their triangle's lane.
+// Copies, clipped triangles and those whose arrays lanes cannot read (PackedValues) are set up one
+// by one.
 #if defined(RASTRUM_RASTER_SHADE_MATERIAL_SEEN_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RASTRUM_RASTER_SHADE_MATERIAL_SEEN_INL_HPP
 #undef RASTRUM_RASTER_SHADE_MATERIAL_SEEN_INL_HPP
@@ -44,8 +43,8 @@ HWY_INLINE V3 turned_by(const float (&m)[3][3], const V3& v) {
   return {row(0), row(1), row(2)};
 }
 
-/// MaterialTriangle by lane, with the attributes of its corners: those of corner 0, and how much
-/// more the others have.
+/// MaterialTriangle by lane. Attributes have corner 0's value and the differences of the other
+/// corners.
 struct MaterialLanes {
   PlaneTable<kLanes> planes;
   HWY_ALIGN float face[3][kLanes];
@@ -57,26 +56,25 @@ struct MaterialLanes {
   std::uint64_t with_normals, with_texcoords, with_colors;  ///< lanes that have some
 };
 
-/// Where the corners of a lane's triangle are read.
 struct MaterialSources : CornerSources {
   const MaterialDraw* draw[kLanes];
   std::uint64_t asked;  ///< lanes that are set up one by one
 };
 
-/// Finds the material and the arrays of one triangle after another.
+/// Finds the material and the arrays of triangles in sequence.
 class MaterialOfTriangle : DrawFinder<MaterialDraw> {
  public:
   HWY_INLINE MaterialOfTriangle(const MaterialView& scene, const FrameGeometry& frame)
       : DrawFinder(frame), scene_(scene) {}
 
-  /// Asks the cache for the indices of triangle `low`, which say what else is read.
+  /// Prefetches the indices of triangle `low`, which say what else is read.
   HWY_INLINE void prefetch(std::uint64_t low) {
     const std::uint64_t corner = 3 * find(low);
     prefetch_indices(corner);
     normals_.prefetch(corner);
     texcoords_.prefetch(corner);
   }
-  /// Finds where triangle `low` is read, and sets all that is not fetched in lanes.
+  /// Finds where triangle `low` is read, and sets what is not fetched in lanes.
   HWY_INLINE void find_sources(std::uint64_t low, std::size_t lane, MaterialSources& from,
                                MaterialLanes& out) {
     const std::uint64_t t = find(low);
@@ -84,7 +82,7 @@ class MaterialOfTriangle : DrawFinder<MaterialDraw> {
     from.draw[lane] = look_;
     if (!simple_) {
       from.asked |= bit;
-      // Any place that may be read.
+      // Any readable address.
       for (int c = 0; c < 3; ++c)
         from.vertex[c][lane] = from.position[c][lane] = from.normal[c][lane] = kNothing;
       return;
@@ -115,7 +113,7 @@ class MaterialOfTriangle : DrawFinder<MaterialDraw> {
       set_colors(color, *out.material[lane], lane, out);
     }
   }
-  /// Sets up all of a triangle that is not read in lanes.
+  /// Sets up a triangle that lanes cannot read.
   HWY_NOINLINE void ask(std::uint64_t low, std::size_t lane, MaterialLanes& out) {
     (void)find(low);
     const MaterialTriangle t(scene_, frame_, *draw_, kIdMask - low);
@@ -158,7 +156,7 @@ class MaterialOfTriangle : DrawFinder<MaterialDraw> {
  private:
   alignas(16) static constexpr float kNothing[4] = {};
 
-  /// Returns the number of triangle `low` in its draw.
+  /// The number of triangle `low` in its draw.
   HWY_INLINE std::uint64_t find(std::uint64_t low) {
     const std::uint64_t id = kIdMask - low;
     if (is_other(id)) look_at(frame_.draw_of(id));
@@ -192,7 +190,7 @@ class MaterialOfTriangle : DrawFinder<MaterialDraw> {
   PackedValues positions_, normals_, texcoords_;
 };
 
-/// Calls use(draw, lanes that are of it) for the draws of n lanes.
+/// Calls use(draw, its lanes) for the draws of n lanes.
 template <class Use>
 HWY_INLINE void for_each_draw(const MaterialSources& from, std::size_t n, const Use& use) {
   std::uint64_t rest = (std::uint64_t{1} << n) - 1;
@@ -205,7 +203,7 @@ HWY_INLINE void for_each_draw(const MaterialSources& from, std::size_t n, const 
   }
 }
 
-/// Finds where triangles low[0, n) are read, 0 < n ≤ kLanes.
+/// Finds where triangles low[0, n), 0 < n ≤ kLanes, are read.
 HWY_INLINE void find_sources(MaterialOfTriangle& finder, const std::uint64_t* low, std::size_t n,
                              MaterialSources& from, MaterialLanes& out) {
   from.asked = 0;
@@ -213,8 +211,7 @@ HWY_INLINE void find_sources(MaterialOfTriangle& finder, const std::uint64_t* lo
   for (std::size_t i = 0; i < n; ++i) finder.find_sources(low[i], i, from, out);
 }
 
-/// Sets up triangles low[0, n), whose sources have been found. `end`: so many lanes are read, n or
-/// some more.
+/// Sets up triangles low[0, n), whose sources are found. `end` ≥ n: the lanes that are read.
 HWY_INLINE void set_triangles(MaterialOfTriangle& finder, const std::uint64_t* low, std::size_t n,
                               std::size_t end, MaterialSources& from, MaterialLanes& out) {
   const F32 d;
@@ -288,26 +285,25 @@ HWY_INLINE void set_triangles(MaterialOfTriangle& finder, const std::uint64_t* l
   }
 }
 
-/// Looks up values of triangles' lanes; `place`: that of each pixel's triangle.
+/// Looks up triangles' lanes; `place`: each pixel's lane.
 struct MaterialLookup : WideLookup, FloatLookup {
   explicit HWY_INLINE MaterialLookup(I place)
       : WideLookup(place), FloatLookup{hn::IndicesFromVec(F32{}, place)} {}
 
   using FloatLookup::operator();
   using WideLookup::operator();
-  /// Looks up `bits`, one for each triangle's lane.
+  /// Looks up `bits`, one a lane.
   [[nodiscard]] HWY_INLINE hn::Mask<F32> where(std::uint64_t bits) const {
     const F is = choose_or_zero(mask_of(bits), set(1));
     return hn::TableLookupLanes(is, lane) > set(0);
   }
 };
 
-/// Two numbers of each of kLanes triangles.
 struct WidePair {
   Wide first, second;
 };
 
-/// Looks up values of the lanes of `t` at pixels, as BinLookup does (material_bin-inl.hpp).
+/// Looks up the lanes of `t` at pixels, as BinLookup (material_bin-inl.hpp).
 struct LaneLookup {
   const MaterialLanes& t;
   const MaterialLookup& look;
@@ -333,12 +329,11 @@ struct LaneLookup {
   }
 };
 
-/// CornerShares of kLanes pixels.
 struct LaneShares {
   Wide scale;
   F weight1, weight2;
 
-  /// At pixels whose samples lie at (x, y), px.
+  /// At the samples (x, y), px.
   template <class From>
   HWY_INLINE LaneShares(const From& from, const Wide& x, const Wide& y) {
     using P = PlaneTable<kLanes>;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Materials in lanes, compiled once per instruction set. A block is done in three steps, each of
-// whole vectors of pixels: the triangles that it sees are set up a lane each
-// (material_seen-inl.hpp) and interpolated into a surface, then each material brings its textures,
-// then all of it is lit. Alpha goes triangle by triangle, by plain loops that compilers vectorize.
+// Materials in lanes, compiled once per instruction set, in three steps of whole vectors of pixels.
+// A block's triangles are set up one a lane (material_seen-inl.hpp) and interpolated into a
+// surface; each material applies its textures; then all is lit. Alpha goes triangle by triangle, in
+// plain loops that compilers vectorize.
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/raster/shade/material_simd.cpp"
@@ -32,7 +32,7 @@ constexpr std::uint64_t kAllLanes = (std::uint64_t{1} << kLanes) - 1;
 HWY_INLINE F load(const float* p) {
   return hn::Load(F32{}, p);
 }
-/// The surfaces of 64 fragments as the lights need them.
+/// The surfaces of 64 fragments, for lighting.
 struct alignas(64) Surface {
   enum Channel {
     kBaseR,
@@ -51,7 +51,7 @@ struct alignas(64) Surface {
     kChannels
   };
   float channel[kChannels][64];
-  float side[64];  ///< −1 where the triangle is seen from behind, else 1
+  float side[64];  ///< −1: the triangle is seen from behind; else 1
 };
 
 /// Lights 64 fragments; results outside of the covered ones do not matter.
@@ -90,7 +90,7 @@ struct BlockMaterials {
   const BoundMaterial* material[64];
   alignas(64) std::uint8_t of_pixel[64];
 
-  /// The number of a material, which is a new one where the block has not seen it.
+  /// A material's number, a new one if the block has not seen it.
   HWY_INLINE std::uint8_t number_of(const BoundMaterial* own) {
     std::size_t m = 0;
     while (m < count && material[m] != own) ++m;
@@ -100,7 +100,7 @@ struct BlockMaterials {
   }
 };
 
-/// Finds the materials of a block's pixels in a bin whose triangles are known.
+/// Finds the materials of a block's pixels in a bin that is set up.
 HWY_INLINE void find_materials(const MaterialView& scene, const SeenBin& bin,
                                const std::uint16_t* place, std::uint64_t covered,
                                BlockMaterials& out) {
@@ -121,7 +121,6 @@ HWY_INLINE void find_materials(const MaterialView& scene, const SeenBin& bin,
   }
 }
 
-/// The triangles of a block, set up, and their materials.
 struct SeenMaterials {
   static constexpr std::size_t kGroups = 64 / kLanes;
   SeenTriangles seen;
@@ -148,7 +147,7 @@ struct SeenMaterials {
   [[nodiscard]] std::size_t groups() const { return (seen.count + kLanes - 1) / kLanes; }
 };
 
-/// Calls use(lanes, lookup, `mask` of pixels whose triangles are in these lanes, first) for the
+/// Calls use(lanes, lookup, `mask` of the pixels with triangles in these lanes, first) for the
 /// covered pixels.
 template <class Use>
 HWY_INLINE void for_each_vector(const VisibleBlock& block, const SeenMaterials& of,
@@ -158,7 +157,7 @@ HWY_INLINE void for_each_vector(const VisibleBlock& block, const SeenMaterials& 
                                      auto mine) HWY_ATTR { use(of.lanes[g], look, mine, first); });
 }
 
-/// Masked stores of AVX2 are slow on Zen 4.
+/// Not a masked store: AVX2's are slow on Zen 4.
 template <class Mask>
 HWY_INLINE void blend(F v, Mask mask, float* to) {
   hn::Store(choose(mask, v, load(to)), F32{}, to);
@@ -171,7 +170,7 @@ HWY_INLINE void blend(const V3& v, Mask mask, float* x, float* y, float* z) {
 }
 
 /// Interpolates vertex colours, normals without normal maps and, if `textured`, texture coordinates
-/// for those of pixels first to first + kLanes that are `mine`, whose triangles are `from`'s.
+/// at the pixels `mine` of first to first + kLanes, whose triangles `from` has.
 template <class From>
 HWY_INLINE void interpolate(const MaterialView& scene, const VisibleBlock& block, const From& from,
                             hn::Mask<F32> mine, std::size_t first, bool textured, Coordinates& at,
@@ -227,13 +226,11 @@ HWY_INLINE void interpolate(const MaterialView& scene, const VisibleBlock& block
   coordinate(v, at.v, at.v_dx, at.v_dy);
 }
 
-/// Which pixels of a vector have material `m`.
 HWY_INLINE hn::Mask<F32> of_material(const BlockMaterials& of, std::size_t m, std::size_t first) {
   if (of.count == 1) return mask_of(kAllLanes);
   const I own = hn::Set(I32{}, static_cast<int>(m));
   return hn::RebindMask(F32{}, hn::Eq(numbers_of(of.of_pixel, first), own));
 }
-/// The covered pixels of a block that have material `m`.
 HWY_INLINE std::uint64_t pixels_of(const VisibleBlock& block, const BlockMaterials& of,
                                    std::size_t m) {
   if (of.count == 1) return block.covered;
@@ -243,7 +240,7 @@ HWY_INLINE std::uint64_t pixels_of(const VisibleBlock& block, const BlockMateria
   return own & block.covered;
 }
 
-/// Sets the values of material `m`, with its textures, but before its normal map. `own_base`: base
+/// Sets the values of material `m` with its textures, except for its normal map. `own_base`: base
 /// colours come from elsewhere.
 HWY_INLINE void set_material(const VisibleBlock& block, const BlockMaterials& of, std::size_t m,
                              const Coordinates& at, bool own_base, Surface& out) {
@@ -286,7 +283,7 @@ HWY_INLINE void set_material(const VisibleBlock& block, const BlockMaterials& of
   });
 }
 
-/// The base colours of materials, which those of vertices replace.
+/// Base colours of materials; those of vertices replace them later.
 HWY_INLINE void set_base(const VisibleBlock& block, const BlockMaterials& of, Surface& out) {
   for (std::size_t m = 0; m < of.count; ++m) {
     const Vec4 base = of.material[m]->base;
@@ -298,7 +295,7 @@ HWY_INLINE void set_base(const VisibleBlock& block, const BlockMaterials& of, Su
   }
 }
 
-/// Normals, bent by the maps of their materials.
+/// Bends normals by the normal maps of their materials.
 HWY_NOINLINE void bend(const VisibleBlock& block, const SeenMaterials& triangles,
                        const BlockMaterials& of, const Coordinates& at, Surface& out) {
   BlockTexels texels;
@@ -332,8 +329,8 @@ HWY_NOINLINE void bend(const VisibleBlock& block, const SeenMaterials& triangles
             float* const ny = out.channel[Surface::kNormalY] + first;
             float* const nz = out.channel[Surface::kNormalZ] + first;
             const V3 n = load(nx, ny, nz);
-            // TangentFrame::bend. A bump on the front is a dent on the back, so the tangents turn
-            // with the normal.
+            // TangentFrame::bend. A bump in front is a dent from behind, so tangents turn with the
+            // normal.
             const F scale = load(strength + first) * load(out.side + first);
             const F x = (load(map.r + first) * set(2) - set(1)) * scale;
             const F y = (load(map.g + first) * set(2) - set(1)) * scale;
@@ -347,7 +344,7 @@ HWY_NOINLINE void bend(const VisibleBlock& block, const SeenMaterials& triangles
           });
 }
 
-/// The surface of a block, with all that its textures, lights and normal maps need.
+/// A block's surface, with what textures, lights and normal maps need.
 struct BlockSurface {
   BlockMaterials materials;
   Surface surface;
@@ -374,7 +371,7 @@ struct BlockSurface {
   }
 };
 
-/// The surface of a block whose triangles its bin has set up.
+/// From the bin's set-up triangles.
 HWY_INLINE void see_by_bin(const MaterialView& scene, const VisibleBlock& block, bool own_base,
                            BlockSurface& out) {
   const SeenBin& bin = *block.bin;
@@ -390,7 +387,7 @@ HWY_INLINE void see_by_bin(const MaterialView& scene, const VisibleBlock& block,
   out.bring_materials(block, own_base);
 }
 
-/// The surface of a block alone.
+/// From the block alone.
 HWY_INLINE void see_alone(const MaterialView& scene, const FrameGeometry& frame,
                           const VisibleBlock& block, bool own_base, BlockSurface& out) {
   const SeenMaterials of(scene, frame, block, out.materials);
@@ -422,16 +419,16 @@ void shade(const MaterialView& scene, const FrameGeometry& frame, const VisibleB
     light_block<false>(scene, seen.surface, block, linear, colors);
 }
 
-/// Loops take so many fragments at a time, so that compilers turn them into whole vectors.
+/// Loops take so many fragments at a time, so that compilers make whole vectors.
 constexpr int kGroup = 8;
 
-/// Fragments of one triangle in a block, densely; the last is repeated up to a whole group.
+/// Fragments of one triangle in a block, packed; the last is repeated to a whole group.
 struct alignas(64) Run {
   int n = 0, padded = 0;
   int lane[64];      ///< 8 · row + column
   double scale[64];  ///< as CornerShares
   float weight1[64], weight2[64];
-  float x[64], y[64];  ///< where they are, px
+  float x[64], y[64];  ///< px
 
   Run(std::uint64_t mask, const WeightPlanes& w, int x0, int y0, const ShadingPoints* points) {
     for (; mask != 0; mask &= mask - 1) lane[n++] = std::countr_zero(mask);
@@ -461,7 +458,7 @@ struct alignas(64) Run {
   }
 };
 
-/// a0 + w1 (a1 − a0) + w2 (a2 − a0): exact for an attribute that is constant.
+/// a0 + w1 (a1 − a0) + w2 (a2 − a0): exact for a constant attribute.
 HWY_INLINE void interpolate(const Run& run, float a0, float a1, float a2, float* HWY_RESTRICT out) {
   const float d1 = a1 - a0, d2 = a2 - a0;
   for (int k = 0; k < run.padded; k += kGroup)
@@ -494,7 +491,7 @@ HWY_INLINE void interpolate_texcoords(const MaterialTriangle& t, const Run& run,
 HWY_INLINE void fill(const Run& run, float value, float* out) {
   for (int k = 0; k < run.padded; ++k) out[k] = value;
 }
-/// A fragment's own alpha, which a mask tests and which blends.
+/// A fragment's own alpha, for masks and blending.
 HWY_INLINE void own_alpha(const MaterialTriangle& t, const BoundMaterial& material, const Run& run,
                           float* HWY_RESTRICT alpha) {
   const float base = material.base.w;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A triangle, and a point in it, as the material shader and alpha know them: for the lanes of the
-// host (material_simd.cpp) and for the scalar form (material_scalar.hpp).
+// A triangle, and a point in it, for the material shader and alpha: for the host's lanes
+// (material_simd.cpp) and the scalar form (material_scalar.hpp).
 #pragma once
 
 #include <cmath>
@@ -22,12 +22,11 @@ RASTRUM_HD_LEAF Vec3 times(const float (&m)[3][3], Vec3 v) {
           m[2][0] * v.x + m[2][1] * v.y + m[2][2] * v.z};
 }
 
-/// The shares of a triangle's corners at a point.
 struct CornerShares {
   double scale;            ///< 1 / Σ weights
   float weight1, weight2;  ///< normalized
 
-  /// The shares at (dx, dy) px from the planes' origin.
+  /// At (dx, dy) px from the planes' origin.
   [[nodiscard]] RASTRUM_HD_LEAF static CornerShares at(const WeightPlanes& w, double dx,
                                                        double dy) {
     const double b0 = w.r[0] + w.p[0] * dx + w.q[0] * dy;
@@ -36,21 +35,19 @@ struct CornerShares {
     const double s = 1 / (b0 + b1 + b2);
     return {s, static_cast<float>(b1 * s), static_cast<float>(b2 * s)};
   }
-  /// How much more an attribute has here than at corner 0. `d1` and `d2`: how much more it has at
-  /// the others. Exactly 0 where it is constant.
+  /// An attribute's difference from corner 0. `d1`, `d2`: those of the other corners. Exactly 0 if
+  /// it is constant.
   [[nodiscard]] RASTRUM_HD_LEAF float offset(float d1, float d2) const {
     return weight1 * d1 + weight2 * d2;
   }
 };
 
-/// A texture coordinate and its change per px.
 struct Coordinate {
   float value, dx, dy;
 };
 
-/// A texture coordinate over a triangle.
 struct CoordinatePlane {
-  float a0, d1, d2;     ///< at corner 0, and how much more at the others
+  float a0, d1, d2;     ///< at corner 0, and the differences of the other corners
   double p, q, px, qy;  ///< Σ bᵢ′ and Σ bᵢ′ dᵢ, along x and y
 
   RASTRUM_HD CoordinatePlane(const WeightPlanes& w, float at0, float more1, float more2)
@@ -69,7 +66,7 @@ struct CoordinatePlane {
   }
 };
 
-/// Linear light at the corners of a triangle of a draw that has colours.
+/// Linear light at a triangle's corners, for a draw that has colours.
 RASTRUM_HD inline void linear_colors(const MaterialDraw& draw, const double* curve,
                                      const TrianglePlace& place, const std::uint32_t (&vertex)[3],
                                      Vec4 (&out)[3]) {
@@ -78,21 +75,20 @@ RASTRUM_HD inline void linear_colors(const MaterialDraw& draw, const double* cur
     for (Vec4& c : out) c = linear_from_display(curve, c);
 }
 
-/// A triangle that is being shaded.
 struct MaterialTriangle {
-  /// Filled for copies alone, which share all but a matrix and a colour.
+  /// Set for copies alone, which share all but a matrix and a colour.
   union OwnDraw {
     MaterialDraw draw;
     RASTRUM_HD OwnDraw() {}
   } own;
   const MaterialDraw& draw;
   const double* curve;
-  std::uint64_t index;  ///< within its mesh
+  std::uint64_t index;  ///< in its mesh
   TrianglePlace place;
   std::uint32_t vertex[3];
   WeightPlanes planes;
 
-  /// `d`: the draw of primitive `id`, one of `frame`'s.
+  /// `d`: the draw of `frame` with primitive `id`.
   template <class Geometry>
   RASTRUM_HD MaterialTriangle(const MaterialView& scene, const Geometry& frame, const Draw& d,
                               std::uint64_t id)
@@ -112,20 +108,20 @@ struct MaterialTriangle {
   [[nodiscard]] RASTRUM_HD T corner(const AttributeView<T>& attribute, int c) const {
     return attribute.at(place, vertex, static_cast<std::size_t>(c));
   }
-  /// The same at all three corners.
+  /// At all three corners.
   template <class T>
   RASTRUM_HD void corners(const AttributeView<T>& attribute, T (&out)[3]) const {
     attribute.corners(place, vertex, out);
   }
-  /// The colours of a draw that has some.
+  /// Requires that the draw has colours.
   RASTRUM_HD void colors(Vec4 (&out)[3]) const { linear_colors(draw, curve, place, vertex, out); }
-  /// The normals of a mesh that has some, in the world.
+  /// In world space. Requires that the mesh has normals.
   RASTRUM_HD void normals(Vec3 (&out)[3]) const {
     corners(draw.mesh->normals, out);
     fill_in_normals(*draw.mesh, vertex, out);
     for (Vec3& n : out) n = times(draw.normal_matrix, n);
   }
-  /// From corner 0 to corner c: rounded once where the positions are float64.
+  /// From corner 0 to corner c; float64 positions are rounded once.
   [[nodiscard]] RASTRUM_HD Vec3 edge(int c) const {
     const ArrayView<Vec3>& positions = draw.mesh->positions;
     if (positions.is_wide()) {
@@ -135,7 +131,7 @@ struct MaterialTriangle {
     }
     return positions[vertex[c]] - positions[vertex[0]];
   }
-  /// The normal of the plane: of unit length, in the world; 0 without area.
+  /// The plane's unit normal in world space; 0 without area.
   [[nodiscard]] RASTRUM_HD Vec3 face_normal() const {
     return normalize(times(draw.normal_matrix, cross(edge(1), edge(2))));
   }
@@ -150,14 +146,14 @@ struct MaterialTriangle {
   }
 };
 
-/// Whether a face with this normal is seen from behind at `px`, a point of the image. Each fragment
-/// decides for itself, so that its colour depends on no other.
+/// Whether a face with this normal is seen from behind at image point `px`. Each fragment decides
+/// by itself, so that its colour depends on no other.
 RASTRUM_HD_LEAF bool is_seen_from_behind(const ViewRays& rays, Vec3 face, float px, float py) {
   return dot(face, rays.d + rays.dx * px + rays.dy * py) > 0;
 }
 
-/// An interpolated normal, of unit length and turned to the side of the face that is seen (`side`:
-/// −1 from behind, else 1); where it has no length, the face's.
+/// An interpolated normal, normalized and turned to the visible side of the face (`side`: −1 from
+/// behind, else 1). Without length: the face's.
 RASTRUM_HD_LEAF Vec3 turned(Vec3 n, Vec3 face, float side) {
   const float square = n.x * n.x + n.y * n.y + n.z * n.z;
   const float scale = 1 / std::sqrt(square);
@@ -170,8 +166,8 @@ RASTRUM_HD_LEAF Vec3 turned(Vec3 n, Vec3 face, float side) {
   return {x * turn, y * turn, z * turn};
 }
 
-/// The directions in which a texture's picture goes right and up, in the world; (0, 0, 0) where the
-/// coordinates span nothing.
+/// The directions of a texture's right and up in world space; (0, 0, 0) where the coordinates span
+/// nothing.
 struct TangentFrame {
   Vec3 right{}, up{};
 
@@ -186,7 +182,6 @@ struct TangentFrame {
     right = normalize((e1 * d2.y - e2 * d1.y) * sign);
     up = normalize((e1 * d2.x - e2 * d1.x) * sign);  // −∂P/∂v
   }
-  /// A normal that is bent by a texel of a normal map.
   [[nodiscard]] RASTRUM_HD_LEAF Vec3 bend(Vec3 n, float r, float g, float b, float strength) const {
     const float x = (r * 2 - 1) * strength;
     const float y = (g * 2 - 1) * strength;
@@ -200,12 +195,12 @@ struct TangentFrame {
   }
 };
 
-/// In [0, 1]; NaN becomes 0.
+/// NaN gives 0.
 RASTRUM_HD_LEAF float clamped_alpha(float a) {
   return a > 0 ? (a < 1 ? a : 1.0F) : 0.0F;
 }
 
-/// Whether all fragments of a triangle have the alpha of its material.
+/// Whether all fragments have their material's alpha.
 RASTRUM_HD inline bool has_constant_alpha(const MaterialDraw& draw, const BoundMaterial& material) {
   return draw.colors.empty() && material.base_color == nullptr && material.alpha == nullptr;
 }

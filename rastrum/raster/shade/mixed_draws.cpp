@@ -27,7 +27,7 @@ MixedDraws::MixedDraws(std::span<Draw> draws, const Shading& shading, const Test
   shading_ = shading_of(draws.front());
   const bool mixes_shadings =
       std::ranges::any_of(draws, [&](const Draw& d) { return shading_of(d) != shading_; });
-  // Draws whose fragments are not tested have no say.
+  // Draws whose fragments are not tested do not count.
   bool mixes_tests = false;
   const Testing* first = nullptr;
   for (const Draw& d : draws) {
@@ -38,8 +38,7 @@ MixedDraws::MixedDraws(std::span<Draw> draws, const Shading& shading, const Test
   if (first != nullptr) test_ = *first;
   if (mixes_tests) test_ = this;
 
-  // Draws are numbered within their shading, so either every draw carries the given one or none
-  // does.
+  // Draws are numbered within their shading, so either all carry the given one or none does.
   if (mixes_shadings || mixes_tests ||
       std::ranges::any_of(draws, [&](const Draw& d) { return d.shading != draws[0].shading; })) {
     own_draws_.assign(draws.begin(), draws.end());
@@ -63,7 +62,7 @@ MixedDraws::MixedDraws(std::span<Draw> draws, const Shading& shading, const Test
   }
 }
 
-/// Outputs that the shader does not have are 0.
+/// Outputs that the shader lacks are 0.
 bool MixedDraws::shade_part(const FrameGeometry& frame, const VisibleBlock& block, const Part& part,
                             Isa isa, BlockColors& colors) const noexcept {
   const std::size_t extra_count = raster::extra_count(part.shading);
@@ -98,8 +97,7 @@ bool MixedDraws::shade(const FrameGeometry& frame, const VisibleBlock& block, Is
     }
     left &= ~some.covered;
     if (some.covered == block.covered) return shade_part(frame, some, part, isa, colors);
-    // A shader may write anything to pixels that it was not asked for, so it gets arrays of its
-    // own.
+    // A shader may write anything to other pixels, so it gets arrays of its own.
     BlockColors own, extra[kMaxExtraTargets];
     if (block.extra != nullptr) some.extra = extra;
     if (shade_part(frame, some, part, isa, own)) std::fill_n(own.a, 64, 1.0F);

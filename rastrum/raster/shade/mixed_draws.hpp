@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Frames whose draws have shading and fragment tests of their own (Draw::shading, Draw::test). A
-// frame knows one of each. MixedDraws is both, and hands the samples of a block on to the shader or
-// test of the draw that each belongs to.
+// Frames whose draws have their own shading and fragment tests (Draw::shading, Draw::test). A frame
+// takes one of each. MixedDraws is both, and gives each sample of a block to the shader or test of
+// its draw.
 #pragma once
 
 #include <cstddef>
@@ -19,10 +19,10 @@ class MixedDraws final : public BlockShader, public FragmentTest {
   /// Error{invalid_argument} naming a draw without a shader. O(draws).
   MixedDraws(std::span<Draw> draws, const Shading& shading, const Testing& test);
 
-  /// The draws, shading and test of the frame. This object is the shading or the test only where
-  /// draws differ in it.
+  /// The frame's draws, shading and test. This object is the shading or test only if draws differ
+  /// in it.
   [[nodiscard]] std::span<Draw> draws() { return draws_; }
-  [[nodiscard]] const Shading& shading() const { return shading_; }  ///< none: without draws
+  [[nodiscard]] const Shading& shading() const { return shading_; }  ///< none: there are no draws
   [[nodiscard]] const Testing& test() const { return test_; }
 
   bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
@@ -37,10 +37,9 @@ class MixedDraws final : public BlockShader, public FragmentTest {
                                    const ShadingPoints* points) const noexcept override;
 
  private:
-  /// One of the shadings.
   struct Part {
     Shading shading;
-    std::size_t scratch;  ///< bytes before its own
+    std::size_t scratch;  ///< where its part of the scratch begins, in bytes
   };
   [[nodiscard]] const Part& part_of(const FrameGeometry& frame, const Draw& draw) const {
     return parts_[part_of_draw_[static_cast<std::size_t>(&draw - frame.draws.data())]];
@@ -49,7 +48,7 @@ class MixedDraws final : public BlockShader, public FragmentTest {
                   BlockColors& colors) const noexcept;
 
   std::span<Draw> draws_;
-  std::vector<Draw> own_draws_;  ///< copies that carry their shading and test, where those differ
+  std::vector<Draw> own_draws_;  ///< copies with their shading and test, if draws differ in those
   Shading shading_;
   Testing test_;
   std::vector<Part> parts_;

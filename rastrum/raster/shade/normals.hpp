@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Normals of triangles for shading, safe for any finite coordinates. Once per visible triangle.
+// Normals of triangles for shading, safe for all finite coordinates. Called once a visible
+// triangle.
 #pragma once
 
 #include <algorithm>
@@ -12,13 +13,12 @@
 
 namespace rastrum::raster {
 
-/// The normal of the triangle's plane, counter-clockwise in front; its largest component is 1. In
-/// float64, because products of coordinates up to FLT_MAX / 16 overflow float32. 0 without area.
+/// The normal of the triangle's plane, towards the counter-clockwise side; its largest component is
+/// 1. Float64, because products of coordinates up to FLT_MAX / 16 overflow float32. 0 without area.
 RASTRUM_HD inline Vec3 face_normal(const MeshView& mesh, const std::uint32_t (&vertex)[3]) {
   Vec3d a, u, v;
   if (mesh.positions.is_packed()) {
-    // By reference: GCC 12 reads copies back by other parts than it wrote, and waits for the
-    // writes.
+    // By reference: GCC 12 reads copies back in other parts than it wrote, and stalls.
     const Vec3* const p = mesh.positions.data();
     const Vec3 &p0 = p[vertex[0]], &p1 = p[vertex[1]], &p2 = p[vertex[2]];
     a.x = p0.x, a.y = p0.y, a.z = p0.z;
@@ -36,17 +36,17 @@ RASTRUM_HD inline Vec3 face_normal(const MeshView& mesh, const std::uint32_t (&v
           static_cast<float>(z / largest)};
 }
 
-/// A caller's normal, scaled where its square would leave float32; 0 where it is not finite.
+/// A caller's normal, scaled if its square would leave float32; 0 if it is not finite.
 RASTRUM_HD inline Vec3 safe_normal(Vec3 n) {
   const float x = std::abs(n.x), y = std::abs(n.y), z = std::abs(n.z);
   const float largest = std::max({x, y, z});
-  constexpr float kMost = 1e15F;  // each is asked: NaN is larger than nothing
+  constexpr float kMost = 1e15F;  // tests each: NaN compares as not larger
   if (x < kMost && y < kMost && z < kMost && largest > 1e-15F) return n;
   if (!is_finite(n) || largest == 0) return {};
   return {n.x / largest, n.y / largest, n.z / largest};
 }
 
-/// Gives corners whose normal is zero or not finite that of the face, on the side of the others.
+/// A corner with a zero or non-finite normal gets the face's, on the side of the other corners.
 RASTRUM_HD inline void fill_in_normals(const MeshView& mesh, const std::uint32_t (&vertex)[3],
                                        Vec3 (&n)[3]) {
   Vec3 sum;
@@ -62,7 +62,7 @@ RASTRUM_HD inline void fill_in_normals(const MeshView& mesh, const std::uint32_t
     if (!says[c]) n[c] = face;
 }
 
-/// The normals at the corners of a triangle, in object space.
+/// In object space.
 RASTRUM_HD inline void corner_normals(const MeshView& mesh, const TrianglePlace& place,
                                       const std::uint32_t (&vertex)[3], Vec3 (&out)[3]) {
   if (mesh.normals.values.empty()) {

@@ -40,7 +40,7 @@ ArrayView<Vec4> PointLineShader::add(const InstanceView& instance, const Surface
 Vec4 PointLineShader::along(const Part& part, Way way, const Fragment& f) const {
   const Vec4 first = color(part, way, f.vertex[0]);
   if (part.colors.empty()) return first;
-  // Exactly the first where they are equal.
+  // Exactly the first if both are equal.
   const Vec4 change = color(part, way, f.vertex[1]) + first * -1;
   return first + change * static_cast<float>(f.weights.b[1]);
 }
@@ -97,7 +97,7 @@ std::uint64_t PointLineShader::test(const FrameGeometry& frame, const Piece& pie
   const std::uint64_t id = id_of_key(piece.low);
   const Draw& draw = frame.draw_of(id);
   const Part& part = part_of(draw);
-  if (part.scalars.colors() != nullptr) return block.mask;  // nothing says what is a hole
+  if (part.scalars.colors() != nullptr) return block.mask;  // scalars have no holes
   const float cutoff = part.surface.material->alpha_cutoff;
   if (draw.topology == Topology::points || part.colors.empty()) {
     const std::uint32_t v = draw.vertex(id - draw.first_id, 0);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The built-in shaders over points and lines of a scene, and the masks of their materials. A point
-// has one colour; along a line it is linear, perspective-correct as every attribute of it. Points
-// with normals are lit, the rest shows its colour.
+// The built-in shaders and materials' masks for points and lines of a scene. A point has one
+// colour; a line's is linear and perspective-correct, as all its attributes. Points with normals
+// are lit, all else shows its colour.
 #pragma once
 
 #include <span>
@@ -24,25 +24,24 @@ class PointLineShader final : public BlockShader, public FragmentTest {
                   const Camera& camera, int width, int height)
       : look_(look, materials, camera, width, height) {}
 
-  /// `instance`: of points or lines, whose arrays must outlive the frame, and its scalars. Returns
-  /// their colours, which scalars stand for.
+  /// `instance`: of points or lines, whose arrays must outlive the frame; with its scalars. Returns
+  /// their colours, or none where scalars or the instance's colour replace them.
   ArrayView<Vec4> add(const InstanceView& instance, const SurfaceScalars& scalars);
-  /// As MaterialShading::linear.
   void leave_linear() { look_.leave_linear(); }
 
   bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
              BlockColors& colors) const noexcept override;
   void prefetch(const FrameGeometry& frame, std::uint64_t id) const noexcept override;
-  /// AlphaMode::mask: drops what lies below the material's cutoff.
+  /// AlphaMode::mask: drops fragments below the material's cutoff.
   [[nodiscard]] std::uint64_t test(const FrameGeometry& frame, const Piece& piece,
                                    const Block& block,
                                    const ShadingPoints* points) const noexcept override;
-  /// The albedo of a fragment: linear light, straight alpha.
+  /// Linear light, straight alpha.
   [[nodiscard]] Vec4 albedo(const FrameGeometry& frame, const Fragment& f) const;
 
  private:
   struct Part {
-    ArrayView<Vec4> colors;  ///< one a position; empty: there are none
+    ArrayView<Vec4> colors;  ///< one a position; empty: none
     ColorSpace color_space = ColorSpace::display;
     ArrayView<Vec3> normals;  ///< the same
     SurfaceScalars scalars;
@@ -50,9 +49,9 @@ class PointLineShader final : public BlockShader, public FragmentTest {
   };
   [[nodiscard]] const Part& part_of(const Draw& draw) const { return parts_[draw.number]; }
   enum class Way { shown, albedo };
-  /// A position's colour times the surface's base, in the look's colour space or in linear light.
+  /// A position's colour times the surface's base, in the look's space or linear light.
   [[nodiscard]] Vec4 color(const Part& part, Way way, std::uint32_t vertex) const;
-  /// The same for a fragment of a line; `f` has the corners' shares.
+  /// For a fragment of a line; `f` has the corners' shares.
   [[nodiscard]] Vec4 along(const Part& part, Way way, const Fragment& f) const;
 
   PlainLook look_;

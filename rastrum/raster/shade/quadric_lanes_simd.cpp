@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Normals and colours of spheres and tubes with Highway, compiled once per instruction set; see the
-// header. The operations and their order are those of point_on (rules/quadric_surface.cpp).
+// Normals and colours of spheres and tubes with Highway, compiled once per instruction set.
+// Operations and order are those of point_on (rules/quadric_surface.cpp).
 
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
@@ -41,7 +41,7 @@ struct WideOnSurface {
   W along;
 };
 
-/// point_on, of a sphere or a hull: what is asked once a primitive, and where rays meet it.
+/// point_on for a sphere or a hull: computed once a primitive, applied where rays meet it.
 class Shape {
  public:
   explicit Shape(const QuadricShape& shape)
@@ -83,8 +83,8 @@ class Shape {
   bool is_hull_;
 };
 
-/// The depths, relative to depth0, of the side of each lane whose depth is its key's: the one that
-/// faces the viewer where both are.
+/// The depths, relative to depth0, of the side whose depth is the lane's key's: the side that faces
+/// the viewer if both have it.
 HWY_INLINE W seen_at(const Quadric& q, const QuadricRow& row, W dx, const std::uint64_t* keys) {
   const Narrow df;
   const hn::RebindToUnsigned<I64> d64;

@@ -40,19 +40,18 @@ Vec4 albedo_at(const QuadricGeometry& geometry, const InstanceView& instance,
          lerp(light(colors[ends.first]), light(colors[ends.second]), static_cast<float>(along));
 }
 
-/// A primitive, set up for shading.
 struct QuadricShader::Kept {
-  std::uint64_t low = 0;  ///< of the key; 0: none yet
+  std::uint64_t low = 0;  ///< of the key; 0: none
   const Surface* surface = nullptr;
   QuadricSurface quadric;
   Vec4 color[2];
-  double scalar[2] = {0, 0};  ///< at the ends of its axis, where they are shown
+  double scalar[2] = {0, 0};  ///< at the ends of its axis, if shown
 };
-/// The primitives that were seen last, by their ids' low bits.
+/// The last ones, by their ids' low bits.
 struct QuadricShader::KeptQuadrics {
   static constexpr std::size_t kCount = 128;
   Kept kept[kCount];
-  const QuadricStage* stage = nullptr;  ///< that was seen last
+  const QuadricStage* stage = nullptr;  ///< the last one
   std::optional<QuadricEye> eye;        ///< of `stage`
 
   const QuadricEye& eye_of(const QuadricStage& of, Viewport viewport) {
@@ -103,7 +102,7 @@ void QuadricShader::fetch(const FrameGeometry& frame, std::uint64_t low, KeptQua
 
 QuadricShader::Seen QuadricShader::seen(const Kept& k, std::uint64_t key,
                                         QuadricSurface::Place at) const {
-  // The depth tells which of the two surfaces it is.
+  // The depth tells which of the two sides it is.
   const float depth = depth_of_key(key);
   scalar_wide::Surface s = k.quadric.side(false, at);
   if (!s.covered || quadric_depth(k.quadric.quadric, s.e) != depth) s = k.quadric.side(true, at);
@@ -121,7 +120,7 @@ std::uint64_t QuadricShader::test(const FrameGeometry& frame, const Piece& piece
                                   const Block& block, const ShadingPoints* points) const noexcept {
   Kept k;
   fetch(frame, piece.low, nullptr, k);
-  if (k.surface->shows_scalars()) return block.mask;  // nothing says what is a hole
+  if (k.surface->shows_scalars()) return block.mask;  // scalars have no holes
   const bool away = (piece.flags & kFacesAway) != 0;
   std::uint64_t kept = 0;
   for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {

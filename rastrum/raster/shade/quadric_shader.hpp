@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The built-in shaders over quadrics: normal and colour are those of the exact point of the surface
-// that a sample sees, in float64; the light is the triangles' (lit_light.inl,
-// material_light.inl).
+// The built-in shaders over quadrics. Normal and colour are those of the exact surface point that a
+// sample sees, in float64; the light is the triangles' (lit_light.inl, material_light.inl).
 #pragma once
 
 #include <cstdint>
@@ -22,17 +21,15 @@ namespace rastrum::raster {
 struct QuadricBlock;
 struct QuadricLanes;
 
-/// Shades draws of quadrics, in the order of `add`, and tests those whose material is a mask.
-/// Scenes without materials are of one that blends by its colours. Textures are not read: a quadric
+/// Shades draws of quadrics, in the order of `add`, and tests those whose material is a mask. A
+/// scene without materials acts as one that blends by its colours. Textures are not read: a quadric
 /// has no texture coordinates.
 class QuadricShader final : public BlockShader, public FragmentTest {
  public:
   QuadricShader(const SurfaceLook& look, std::span<const Material> materials, const Camera& camera,
                 int width, int height);
-  /// `instance`: that of the stage. Its own look is heeded, as are its scalars. `stage` must
-  /// outlive the frame.
+  /// `instance`: the stage's; its look and scalars apply. `stage` must outlive the frame.
   void add(const QuadricStage& stage, const InstanceView& instance, const SurfaceScalars& scalars);
-  /// As MaterialShading::linear.
   void leave_linear() { look_.leave_linear(); }
 
   bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
@@ -46,7 +43,7 @@ class QuadricShader final : public BlockShader, public FragmentTest {
   struct Surface {
     const QuadricStage* stage;
     PlainSurface plain;
-    ArrayView<Vec4> colors;  ///< empty: there are none
+    ArrayView<Vec4> colors;  ///< empty: none
     SurfaceScalars scalars;
 
     [[nodiscard]] bool shows_scalars() const { return scalars.colors() != nullptr; }
@@ -62,16 +59,15 @@ class QuadricShader final : public BlockShader, public FragmentTest {
 
   struct Seen {
     Vec4 base;
-    Vec3 normal;  ///< world space, of any length
+    Vec3 normal;  ///< world space, any length
   };
 
-  /// `all`: whose eye is used; null: a new one.
+  /// `all`: has the eye to use; null: a new one is made.
   void fetch(const FrameGeometry& frame, std::uint64_t low, KeptQuadrics* all, Kept& out) const;
   [[nodiscard]] Seen seen(const Kept& kept, std::uint64_t key, QuadricSurface::Place at) const;
-  /// Sets the surface of a primitive at the samples `mask` of a block.
   void fill(const QuadricLanes& lanes, const Kept& kept, const VisibleBlock& block,
             std::uint64_t mask, QuadricBlock& out) const;
-  /// shade() of the models that lanes have.
+  /// shade() for the models that lanes have.
   bool shade_lit(const QuadricLanes& lanes, const FrameGeometry& frame, const VisibleBlock& block,
                  Isa isa, BlockColors& colors) const;
 
@@ -79,11 +75,11 @@ class QuadricShader final : public BlockShader, public FragmentTest {
   std::vector<Surface> surfaces_;
 };
 
-/// The geometry's colours, unless the instance's stands for them.
+/// The geometry's colours, unless the instance's replaces them.
 [[nodiscard]] ArrayView<Vec4> colors_of(const QuadricGeometry& geometry,
                                         const InstanceView& instance);
 
-/// Base colour times colours at a place along a primitive's axis, in linear light.
+/// Base colour times colours at a place on a primitive's axis, in linear light.
 [[nodiscard]] Vec4 albedo_at(const QuadricGeometry& geometry, const InstanceView& instance,
                              std::span<const Material> materials, std::uint64_t primitive,
                              double along);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The colours of many numbers at once, by instruction set: what the scalar form says of each
-// (scalar_colors.cpp), in the same order, so the same bits.
+// Colours of many scalars at once, by instruction set, with the operations, order and bits of the
+// scalar form (scalar_colors.cpp).
 #pragma once
 
 #include <vector>
@@ -14,21 +14,21 @@ struct alignas(64) MappedColors {
   float r[64], g[64], b[64], a[64];
 };
 
-/// A mapping with is_ramp(), without its isolines.
+/// A mapping with is_ramp(), without isolines.
 class ScalarRamp {
  public:
   explicit ScalarRamp(const ScalarColors& colors);
 
   double low, high, span;
   Vec4 below, above, nan;
-  double last;                 ///< place of the last colour
+  double last;                 ///< index of the last colour
   std::vector<double> colors;  ///< RGBA
 };
 
 /// Sets the colours of 64 numbers, 64-byte aligned.
 using MapNumbers = void (*)(const ScalarRamp& ramp, const double* numbers,
                             MappedColors& colors) noexcept;
-/// Null where there are no lanes.
+/// Null: the instruction set has none.
 [[nodiscard]] MapNumbers map_numbers(Isa isa) noexcept;
 
 }  // namespace rastrum::raster

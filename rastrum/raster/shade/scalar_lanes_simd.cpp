@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The colours of numbers with Highway, compiled once per instruction set; see the header.
+// Colours of scalars with Highway, compiled once per instruction set.
 
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
@@ -39,7 +39,7 @@ void map(const ScalarRamp& ramp, const double* numbers, MappedColors& colors) no
       part = (value - low) / span;
       part = hn::IfThenElse(part < zero, zero, hn::IfThenElse(one < part, one, part));
     }
-    // NaN and numbers beyond the range read the first colour, which is replaced below.
+    // NaN and numbers out of range read the first colour, which is replaced below.
     const auto is_nan = hn::IsNaN(value);
     const auto is_below = value<low, is_above = value> high;
     part = hn::IfThenZeroElse(hn::Or(is_nan, hn::Or(is_below, is_above)), part);

@@ -51,7 +51,7 @@ void ScalarMeshShader::color_each(const FrameGeometry& frame, const VisibleBlock
   FragmentLocator locator(frame);
   const bool is_wire = look_.model == Shader::wireframe;
   double corner[3] = {};
-  std::uint64_t corners_of = kMaxId + 1;  // the triangle that they are of
+  std::uint64_t corners_of = kMaxId + 1;  // their triangle
   for (std::uint64_t m = block.covered; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
     const std::uint64_t id = id_of_key(block.keys[i]);
@@ -94,7 +94,7 @@ void ScalarMeshShader::color_all(const FrameGeometry& frame, const VisibleBlock&
   }
   Numbers64 value{};
   kernels.numbers(seen, shares, block.covered, corner, value);
-  for (std::uint64_t rest = block.covered; rest != 0;) {  // colour ramp by colour ramp
+  for (std::uint64_t rest = block.covered; rest != 0;) {  // by colour ramp
     const auto ramp = [&](std::size_t k) { return ramp_of_[seen.draw[k]->number]; };
     const std::uint32_t first = ramp(seen.place[std::countr_zero(rest)]);
     std::uint64_t mine = ramps_.size() == 1 ? rest : seen.pixels_where(rest, [&](std::size_t k) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The built-in shaders over meshes whose numbers are their colours: these stand for base colours,
-// textures and vertex colours; the light, the normals and the rest of a material are as without.
+// The built-in shaders over meshes coloured by scalars. Their colours replace base colours,
+// textures and vertex colours. Light, normals and the rest of a material are unchanged.
 #pragma once
 
 #include <cstdint>
@@ -18,17 +18,15 @@
 
 namespace rastrum::raster {
 
-/// Shades the draws of such instances, in their order. Tests those whose material is a mask by its
-/// texture, as without scalars. Alpha is opacity times the colour's, whatever the mode of the
-/// material.
+/// Shades the draws of such instances, in order. Tests those whose material is a mask by its
+/// texture, as without scalars. Alpha is opacity times the colour's, in any mode of the material.
 class ScalarMeshShader final : public BlockShader, public FragmentTest {
  public:
-  /// `scene`: of these instances alone, `scalars` theirs; both must outlive this. `textures`: up to
+  /// `scene`: only these instances, `scalars` theirs; both must outlive this. `textures`: up to
   /// date with what materials and masks read.
   ScalarMeshShader(const SurfaceLook& look, const SceneView& scene,
                    std::vector<SurfaceScalars> scalars, const Camera& camera, int width, int height,
                    const TextureSet& textures);
-  /// As MaterialShading::linear.
   void leave_linear() { linear_ = true; }
 
   bool shade(const FrameGeometry& frame, const VisibleBlock& block, Isa isa,
@@ -39,15 +37,14 @@ class ScalarMeshShader final : public BlockShader, public FragmentTest {
                                    const ShadingPoints* points) const noexcept override;
 
  private:
-  /// Base colours and alpha of the covered samples, one after the other.
   void color_each(const FrameGeometry& frame, const VisibleBlock& block, LitBlock& surface,
                   float (&alpha)[64]) const;
-  /// The same in lanes, where `ramps_` are there; not of `wireframe` and `id`.
+  /// The same in lanes, if there are `ramps_`; not for `wireframe` and `id`.
   void color_all(const FrameGeometry& frame, const VisibleBlock& block, Isa isa, LitBlock& surface,
                  float (&alpha)[64]) const;
-  /// The part of alpha that is the same all over a face.
+  /// The part of alpha that is constant on a face.
   [[nodiscard]] float opacity_of(const Fragment& f, std::size_t number) const;
-  /// Colours of the covered samples, whose base colours `surface` holds; alpha 1.
+  /// Colours of the covered samples with the base colours of `surface`; alpha 1.
   void light(const FrameGeometry& frame, const VisibleBlock& block, Isa isa, LitBlock& surface,
              BlockColors& colors) const;
 
@@ -55,7 +52,7 @@ class ScalarMeshShader final : public BlockShader, public FragmentTest {
   bool linear_ = false;
   bool isolines_ = false;                ///< some scalars have isolines
   std::vector<SurfaceScalars> scalars_;  ///< by Draw::number
-  std::vector<ScalarRamp> ramps_;        ///< of all of them, or none at all
+  std::vector<ScalarRamp> ramps_;        ///< all scalars', or none
   std::vector<std::uint32_t> ramp_of_;   ///< by Draw::number, into `ramps_`
   LitScene lit_;
   MaterialScene materials_;

@@ -15,7 +15,7 @@ namespace rastrum::raster {
 
 namespace {
 
-/// The colours before they are multiplied by the alpha of `shading`.
+/// Not multiplied by the alpha of `shading`.
 bool shade_colors(const Shading& shading, const FrameGeometry& frame, const VisibleBlock& block,
                   Isa isa, BlockColors& colors) noexcept {
   if (const LitShading* const l = shading.lit()) {
@@ -110,7 +110,7 @@ std::optional<float> constant_alpha(const Shading& shading) noexcept {
 }
 
 bool wants_depth(const Shading& shading) noexcept {
-  // Light from a direction does not ask where a surface lies.
+  // Light with a direction does not depend on a surface's place.
   const auto asks = [](const LightSet* lights) { return lights != nullptr && lights->has_places; };
   if (const LitShading* const l = shading.lit()) return asks(l->scene->lights);
   if (const MaterialShading* const m = shading.material()) return asks(m->scene->lights);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shadow maps: the depths that a light sees (lights.inl looks places up in them).
+// Shadow maps: the depths that a light sees. lights.inl looks them up.
 #pragma once
 
 #include <rastrum/config.hpp>
@@ -8,12 +8,12 @@
 namespace rastrum::raster {
 
 struct ShadowMap {
-  const float* depth = nullptr;  ///< reversed; row after row
+  const float* depth = nullptr;  ///< reversed; row by row
   int width = 0, height = 0;     ///< at least 4
-  /// Columns, rows, depth and w of a place from LightSet::origin: (x, y, z, 1) · row.
+  /// Column, row, depth and w of a place relative to LightSet's origin: (x, y, z, 1) · row.
   Vec4 column, row, z, w;
-  /// A texel's width where w is 1, three times: as far as the lookup reaches. Moved so far along
-  /// its normal no plane stands in its own way.
+  /// Three texel widths at w = 1, as far as the lookup reaches. A place moved so far along its
+  /// normal is not shadowed by its own plane.
   float offset = 0;
 };
 

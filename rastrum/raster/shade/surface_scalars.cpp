@@ -10,8 +10,8 @@
 namespace rastrum::raster {
 namespace {
 
-/// Σ bᵢ vᵢ, left to right, no further than the numbers themselves; so what is equal at all corners
-/// is equal everywhere, and no rounding leads beyond a range that the corners end.
+/// Σ bᵢ vᵢ, left to right, clamped to the numbers' range: what is equal at all corners is equal
+/// everywhere, and rounding does not leave the corners' range.
 double weighted(const double* b, const double* v, int n) {
   double sum = v[0] * b[0], low = v[0], high = v[0];
   bool nan = std::isnan(v[0]);

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kRowGrain = 16;
 constexpr std::size_t kFingerprintTexels = 509;
 
-/// FNV-1a over texels spread evenly over the picture.
+/// FNV-1a over evenly spread texels.
 std::uint64_t fingerprint(std::span<const Rgba8> texels) {
   std::uint64_t hash = 0xcbf29ce484222325U;
   const std::size_t n = std::min(texels.size(), kFingerprintTexels);
@@ -27,7 +27,7 @@ std::uint64_t fingerprint(std::span<const Rgba8> texels) {
   return hash;
 }
 
-/// The texels of one axis under texel `i` of the next level, and how much of it each covers.
+/// The texels of one axis under texel `i` of the next level, and their weights.
 struct Footprint {
   std::int32_t first = 0;
   int count = 0;
@@ -45,10 +45,10 @@ Footprint footprint(std::int32_t i, std::int32_t size, std::int32_t next) {
   return {2 * i, 3, {part(next - i), whole, part(i + 1)}};
 }
 
-/// The nearest code of 0 to 255; ties to even, because means of two codes are ties half of the time
-/// and rounding them up would brighten each level.
+/// To 0 … 255; ties to even, because half of the means of two codes are ties, and rounding those up
+/// would brighten each level.
 std::uint8_t nearest_code(float mean) {
-  constexpr float kOnes = 0x1.8p23F;  // from here floats are whole numbers, and so is a sum
+  constexpr float kOnes = 0x1.8p23F;  // from here on floats are whole numbers
   return static_cast<std::uint8_t>(std::bit_cast<std::uint32_t>(mean + kOnes) & 0xFFU);
 }
 
@@ -64,7 +64,7 @@ void reduce_row(const MipLevel& from, std::int32_t next_width, std::int32_t next
   const auto encode = [&](float c) { return kColor ? codes(c) : nearest_code(c); };
   const Footprint rows = footprint(y, from.height, next_height);
   if (from.width % 2 == 0 && from.height % 2 == 0) {
-    // Four texels of one weight, which as a power of 2 changes no bit of their sum.
+    // Four texels of equal weight; as a power of 2 it changes no bit of their sum.
     const Rgba8* const top = from.texels + static_cast<std::ptrdiff_t>(2 * y) * from.width;
     const Rgba8* const bottom = top + from.width;
     for (std::int32_t x = 0; x < next_width; ++x) {
@@ -118,7 +118,7 @@ void reduce(const MipLevel& from, TexelUse use, std::int32_t width, std::int32_t
 
 struct TextureSet::Chain {
   explicit Chain(MemoryAccount& memory) : texels(memory) {}
-  ScratchBuffer<Rgba8> texels;  ///< levels 1 and up, one after the other
+  ScratchBuffer<Rgba8> texels;  ///< levels 1 and up, in sequence
   MipChain chain;
 
   void build(const Texture& texture, TexelUse use, parallel::Threads* exec) {

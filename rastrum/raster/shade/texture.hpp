@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Mip chains of a scene's textures. Level 0 is the caller's image, borrowed; the others are 8 bit
-// and built once, because a frame has no time for it: a box filter over exactly the texels that a
-// texel of the next level covers (three weighted ones a side where a size is odd), in linear light
-// for colours.
+// Mip chains of a scene's textures. Level 0 is the caller's image, borrowed. The others are 8 bit
+// and built once, since a frame has no time for it: a box filter over exactly the texels under a
+// texel of the next level (three weighted ones a side at odd sizes), in linear light for colours.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +15,7 @@
 
 namespace rastrum::raster {
 
-/// How the r, g, b of a texture are read. The reading material decides, since a picture may be used
-/// both ways.
+/// How r, g, b of a texture are read. The material decides, since a picture may be used both ways.
 enum class TexelUse : std::uint8_t {
   color = 1,  ///< sRGB: base colour, emission
   data = 2,   ///< linear: metallic-roughness, normals, occlusion, alpha maps
@@ -33,11 +31,11 @@ inline constexpr int kMaxLevels = 16;  // 2^15 px and below
 /// One texture with one use.
 struct MipChain {
   TexelUse use = TexelUse::color;
-  const float* decode = nullptr;  ///< 256 values of the r, g and b codes; alpha is code / 255
+  const float* decode = nullptr;  ///< 256 values for codes of r, g, b; alpha is code / 255
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
   TextureFilter mag = TextureFilter::linear, min = TextureFilter::linear;
   int levels = 0;
-  std::uint64_t number = 0;  ///< of the picture: no other chain has it, whatever lies where
+  std::uint64_t number = 0;  ///< unique to this chain, whatever its address
   MipLevel level[kMaxLevels];
 };
 
@@ -47,20 +45,17 @@ class TextureSet {
   explicit TextureSet(MemoryAccount& memory);
   ~TextureSet();
 
-  /// Makes the chains that `uses` asks for (a sum of TexelUse for each texture) and drops those of
-  /// textures that are gone. A texture whose pixels lie at the same address with the same size and
-  /// the same fingerprint (some hundred texels spread over it) keeps its chain; to change a few
-  /// texels in place between frames, make a new Renderer. `exec` may be null: one thread.
-  /// Cost: O(new texels), about 10 ns each; O(textures) where nothing is new. Holds a third of the
-  /// textures' own bytes. The images must live as long as chains are read.
+  /// Makes the chains of `uses` (a sum of TexelUse for each texture), and drops those of textures
+  /// that are gone. A texture with the same address, size and fingerprint (some hundred texels
+  /// spread over it) keeps its chain. After changing a few texels in place, make a new Renderer.
+  /// `exec` may be null: one thread. Cost: O(new texels), about 10 ns each; O(textures) if none is
+  /// new. Holds a third of the textures' bytes. The images must live while chains are read.
   void update(std::span<const Texture> textures, std::span<const std::uint8_t> uses,
               parallel::Threads* exec);
 
-  /// Null where `texture` is kNoTexture, an empty image or was not asked for with this use.
+  /// Null: `texture` is kNoTexture, an empty image, or has no chain for this use.
   [[nodiscard]] const MipChain* find(std::int32_t texture, TexelUse use) const noexcept;
-  /// Bytes held at the moment.
   [[nodiscard]] std::uint64_t bytes() const noexcept;
-  /// Chains built so far.
   [[nodiscard]] std::uint64_t builds() const noexcept { return builds_; }
 
  private:

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A texture at one point, for the lanes of the host's shaders (texture_pixels-inl.hpp) and for
-// devices: one body, so one picture. Filtering follows the OpenGL 4.6 specification, sections 8.14
-// and 8.15.
+// A texture at one point, in one body for the host's lanes (texture_pixels-inl.hpp) and devices, so
+// their pictures agree. Filters follow OpenGL 4.6, sections 8.14 and 8.15.
 #pragma once
 
 #include <bit>
@@ -17,7 +16,7 @@ struct Texel {
   float r, g, b, a;
 };
 
-/// code / 255 is code · kOf256 + code · kOf65280, bit by bit, and without a division.
+/// code / 255 is exactly code · kOf256 + code · kOf65280, without a division.
 inline constexpr float kOf256 = 1.0F / 256, kOf65280 = 1.0F / 65280;
 
 namespace texture_detail {
@@ -30,7 +29,7 @@ RASTRUM_HD_LEAF Texel mix(Texel p, Texel q, float f) {
           p.a + (q.a - p.a) * f};
 }
 
-/// log2 to 1.5e-5, minimax on the mantissa; at 0 below −60, at infinity and NaN 128.
+/// log2 to 1.5e-5, minimax on the mantissa; below −60 at 0, 128 at infinity and NaN.
 RASTRUM_HD_LEAF float log2_of(float x) {
   const std::uint32_t bits = std::bit_cast<std::uint32_t>(x);
   const float exponent = static_cast<float>(static_cast<std::int32_t>(bits >> 23 & 255U) - 127);
@@ -43,7 +42,7 @@ RASTRUM_HD_LEAF float log2_of(float x) {
 
 }  // namespace texture_detail
 
-/// The coordinate inside one copy of the picture, in [0, 1]; NaN and infinity become 0.
+/// The coordinate within one copy of the picture, in [0, 1]; NaN and infinity give 0.
 template <Wrap kWrap>
 RASTRUM_HD_LEAF float fold(float t) {
   float f = t;
@@ -60,8 +59,8 @@ RASTRUM_HD inline float fold(Wrap wrap, float t) {
                                          : fold<Wrap::clamp_to_edge>(t);
 }
 
-/// log2 of the longer axis of a pixel's footprint, in texels of a level 0 that is `width` ×
-/// `height`, from the change of the coordinates per px.
+/// log2 of a pixel footprint's longer axis, in texels of a level 0 of `width` × `height`, from the
+/// coordinates' change per px.
 RASTRUM_HD_LEAF float level_of_detail(float width, float height, float u_dx, float v_dx, float u_dy,
                                       float v_dy) {
   const float ux = u_dx * width, vx = v_dx * height;
@@ -71,7 +70,7 @@ RASTRUM_HD_LEAF float level_of_detail(float width, float height, float u_dx, flo
   return 0.5F * texture_detail::log2_of(along_x > along_y ? along_x : along_y);
 }
 
-/// Decoders of the channels of a texel that are wanted.
+/// Decode the wanted channels of a texel.
 struct AllChannels {
   const float* decode;
   RASTRUM_HD_LEAF Texel operator()(Rgba8 t) const {
@@ -89,8 +88,8 @@ struct AlphaChannel {
   }
 };
 
-/// Lookups at folded coordinates. A mirrored picture's edge is its own neighbour, as a clamped
-/// one's.
+/// Lookups at folded coordinates. The edge of a mirrored picture is its own neighbour, as when
+/// clamped.
 template <class Decode>
 class Lookup {
  public:
@@ -101,7 +100,6 @@ class Lookup {
         wrap_v_(chain.wrap_v == Wrap::repeat),
         last_level_(static_cast<float>(chain.levels - 1)) {}
 
-  /// By the filters of the chain.
   RASTRUM_HD_LEAF auto operator()(float u, float v, float level_of_detail) const {
     if (!(level_of_detail > 0))
       return chain_.mag == TextureFilter::linear ? linear(chain_.level[0], u, v)

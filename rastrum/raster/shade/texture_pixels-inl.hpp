@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Texture look-ups of a block's pixels, whatever their triangles, with the bits of Lookup
-// (texture_lookup.hpp): levels, places and filter weights in lanes; then a pixel at a time, with
-// the channels of a texel in the lanes, because its codes are decoded by loads (gathers and
+// Texture look-ups of a block's pixels, whatever their triangles, with Lookup's bits
+// (texture_lookup.hpp). Levels, places and filter weights are found in lanes. Then each pixel in
+// turn has its texel's channels in lanes, because codes are decoded by loads (gathers and
 // permutations of the sRGB table are slower: docs/log/shaders.md). All places of a block are found
-// before its first texel is read: the chain to a place is longer than what a processor looks ahead.
+// before its first texel is read: the chain to a place is longer than a processor looks ahead.
 #if defined(RASTRUM_RASTER_SHADE_TEXTURE_PIXELS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RASTRUM_RASTER_SHADE_TEXTURE_PIXELS_INL_HPP
 #undef RASTRUM_RASTER_SHADE_TEXTURE_PIXELS_INL_HPP
@@ -26,13 +26,13 @@ HWY_BEFORE_NAMESPACE();
 namespace rastrum::raster::HWY_NAMESPACE {
 namespace {
 
-/// Texture coordinates of up to 64 pixels and their change per px.
+/// For up to 64 pixels, with their change per px.
 struct alignas(64) Coordinates {
   float u[64], v[64];
   float u_dx[64], u_dy[64], v_dx[64], v_dy[64];
 };
 
-/// Codes 0 to 255 as code / 255, rounded as the division is (Material.CodesOfDataAreExact).
+/// code / 255, rounded as the division is (Material.CodesOfDataAreExact).
 template <class V>
 HWY_INLINE V of_255(V code) {
   const hn::DFromV<V> d;
@@ -73,8 +73,8 @@ struct Taps {
   HWY_ALIGN std::int32_t left_top[64], right_top[64], left_bottom[64], right_bottom[64];
   HWY_ALIGN float right[64], below[64];
 
-  /// Sets the taps of kLanes pixels. `u`, `v`: folded. Levels are halves of those before, rounded
-  /// down, and at least 1.
+  /// Sets the taps of kLanes pixels. `u`, `v`: folded. A level is half of the one before, rounded
+  /// down, at least 1.
   HWY_INLINE void find(const MipChain& chain, std::size_t pixel, I level, F u, F v) {
     const I32 di;
     const F32 d;
@@ -105,7 +105,7 @@ struct Taps {
 using Texel128 = hn::Full128<float>;
 using TexelLanes = hn::Vec<Texel128>;
 
-/// Red, green and blue of a texel; the fourth is anything.
+/// Red, green and blue of a texel; the fourth lane is undefined.
 struct DecodeData {
   HWY_INLINE explicit DecodeData(const MipChain& /*chain*/) {}
   HWY_INLINE TexelLanes operator()(const Rgba8& t) const {
@@ -125,11 +125,9 @@ struct DecodeColor {
   }
 };
 
-/// Red, green and blue of a texture at a block's pixels.
 struct BlockTexels {
   HWY_ALIGN float texel[64][4];
 
-  /// The texels of kLanes pixels.
   [[nodiscard]] HWY_INLINE V3 at(std::size_t first) const {
     V3 out;
     F fourth;
@@ -138,7 +136,7 @@ struct BlockTexels {
   }
 };
 
-/// The coordinates of kLanes pixels, folded, and their levels of detail.
+/// Folded coordinates and levels of detail of kLanes pixels.
 struct Looks {
   F u, v, level_of_detail;
 
@@ -156,7 +154,7 @@ struct Looks {
   }
 };
 
-/// The looks of a block's pixels, for code that looks up one pixel after the other.
+/// The same for a block, for code that looks up pixel by pixel.
 struct EachLook {
   HWY_ALIGN float u[64], v[64], level_of_detail[64];
 
@@ -173,7 +171,7 @@ struct EachLook {
   }
 };
 
-/// Calls use(first) for kLanes pixels after kLanes pixels of which some are `wanted`.
+/// Calls use(first) for each kLanes pixels with some `wanted`.
 template <class Use>
 HWY_INLINE void for_wanted(std::uint64_t wanted, const Use& use) {
   constexpr std::uint64_t kAll = (std::uint64_t{1} << kLanes) - 1;
@@ -185,9 +183,8 @@ HWY_INLINE void for_wanted(std::uint64_t wanted, const Use& use) {
 struct Places {
   HWY_ALIGN std::int32_t finer[64];  ///< the level of `fine`
   HWY_ALIGN float coarser_share[64];
-  Taps fine, coarse;  ///< of the next level, where its share is more than 0
+  Taps fine, coarse;  ///< of the next level, if its share is above 0
 
-  /// Finds the places of kLanes pixels.
   HWY_INLINE void find(const MipChain& chain, const Coordinates& at, std::size_t first) {
     const F32 d;
     const I32 di;
@@ -210,7 +207,7 @@ HWY_INLINE void sample_linear(const MipChain& chain, const Coordinates& at, std:
   const Texel128 d4;
   Places places;
   auto& [finer, coarser_share, fine, coarse] = places;
-  if (wanted != ~std::uint64_t{0})  // others are asked for ahead, too
+  if (wanted != ~std::uint64_t{0})  // others are prefetched, too
     for (std::int32_t* const place : {finer, fine.left_top, fine.left_bottom})
       for (std::size_t i = 0; i < 64; i += kLanes) hn::Store(hn::Zero(di), di, place + i);
   for_wanted(wanted, [&](std::size_t first) HWY_ATTR { places.find(chain, at, first); });
@@ -274,7 +271,7 @@ struct RedCodes {
   static HWY_INLINE F number(I codes) { return hn::BitCast(F32{}, codes); }
 };
 
-/// Multiplies the first n values by one channel of a texture. Whole vectors are read and written.
+/// Multiplies the first n values by one channel of a texture. Reads and writes whole vectors.
 template <class Codes, class Channel>
 HWY_NOINLINE void multiply_by(const MipChain& chain, const Coordinates& at, int n, float* values) {
   const I32 di;

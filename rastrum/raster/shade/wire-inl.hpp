@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shader::wireframe and Shader::id in lanes, a block at a time. Each triangle of a wireframe visits
-// the rows of its samples. The operations are those of wire.cpp, interpolate.hpp and id_color.
+// Shader::wireframe and Shader::id in lanes, a block at a time. A wireframe visits, for each
+// triangle, the rows of its samples. Operations are those of wire.cpp, interpolate.hpp and
+// id_color.
 #if defined(RASTRUM_RASTER_SHADE_WIRE_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RASTRUM_RASTER_SHADE_WIRE_INL_HPP
 #undef RASTRUM_RASTER_SHADE_WIRE_INL_HPP
@@ -27,13 +28,13 @@ namespace {
 
 constexpr std::uint64_t kWideBits = (std::uint64_t{1} << kLanes64) - 1;
 
-/// The triangles of a block: how far its samples are from their edges.
+/// A block's triangles and its samples' distances to their edges.
 struct WireBlock {
   SeenPlanes seen;
   std::uint64_t samples[64];  ///< by triangle
   /// wire_share's planes, px from the edges, by triangle.
   HWY_ALIGN double p[3][64], q[3][64], r[3][64];
-  HWY_ALIGN double x[64], y[64];  ///< where the samples are, px
+  HWY_ALIGN double x[64], y[64];  ///< places of the samples, px
 
   HWY_INLINE WireBlock(const FrameGeometry& frame, const VisibleBlock& block) {
     see_planes(frame, block, seen);
@@ -47,7 +48,7 @@ struct WireBlock {
   }
 
  private:
-  /// The samples whose place is k.
+  /// The samples with place k.
   [[nodiscard]] HWY_INLINE std::uint64_t samples_of(std::size_t k) const {
     const hn::CappedTag<std::uint8_t, 64> d;
     constexpr std::size_t kBytes = hn::MaxLanes(hn::CappedTag<std::uint8_t, 64>());
@@ -78,8 +79,8 @@ struct WireBlock {
   }
 };
 
-/// Distances to the nearest edge of triangle k at its samples. `kCentred`: the samples of a column
-/// of the block have one x.
+/// Distances to the nearest edge of triangle k at its samples. `kCentred`: the samples of a block's
+/// column share one x.
 template <bool kCentred>
 HWY_INLINE void visit(const WireBlock& w, std::size_t k, double* nearest) {
   constexpr std::size_t kInRow = 8 / kLanes64;  // vectors
@@ -112,7 +113,7 @@ HWY_INLINE void visit(const WireBlock& w, std::size_t k, double* nearest) {
   }
 }
 
-/// The base colours of triangle k at its samples, as wire_base has them.
+/// wire_base of triangle k at its samples.
 HWY_INLINE void set_base(const LitScene& scene, const WireBlock& w, std::size_t k,
                          float (&base)[3][64]) {
   constexpr std::uint64_t kAll = (std::uint64_t{1} << kLanes) - 1;
@@ -162,7 +163,7 @@ HWY_NOINLINE void shade_wires(const LitScene& scene, const FrameGeometry& frame,
   }
 }
 
-/// id_color of any keys: those that are 0 have one, too, which nobody reads.
+/// id_color of all keys; those that are 0 get one that nobody reads.
 HWY_NOINLINE void shade_ids(const VisibleBlock& block, BlockColors& colors) {
   const hn::RebindToUnsigned<I64> d64;
   const hn::Rebind<std::uint32_t, F64> du;

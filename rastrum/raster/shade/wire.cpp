@@ -16,7 +16,7 @@ float wire_share(const LocatedFragment& f) {
     const double square = w.p[i] * w.p[i] + w.q[i] * w.q[i];
     const double scale = 1 / std::sqrt(square);
     const double d = std::abs(w.r[i] * scale + w.p[i] * scale * dx + w.q[i] * scale * dy);
-    // An edge at infinity has no slope, and no distance.
+    // An edge at infinity has no slope and no distance.
     if (square > 0 && d < nearest) nearest = d;
   }
   return static_cast<float>(std::clamp(1.0 - nearest, 0.0, 1.0));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The triangles that the pixels of a bin see, numbered in the order in which they are met and set
-// up kLanes at a time, a group. While a group is set up the vertices of the next one and the
-// indices of those behind it come from memory.
+// The triangles that a bin's pixels see, numbered in order of appearance and set up in groups of
+// kLanes. Meanwhile the next group's vertices and later indices come from memory.
 #if defined(RASTRUM_RASTER_SURFACE_SEEN_BIN_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RASTRUM_RASTER_SURFACE_SEEN_BIN_INL_HPP
 #undef RASTRUM_RASTER_SURFACE_SEEN_BIN_INL_HPP
@@ -27,7 +26,7 @@ HWY_BEFORE_NAMESPACE();
 namespace rastrum::raster::HWY_NAMESPACE {
 namespace {
 
-/// Groups of triangles whose indices are asked for before they are read.
+/// Groups whose indices are prefetched.
 constexpr std::size_t kAhead = 3;
 
 HWY_INLINE std::uint64_t covered_of(const std::uint64_t* keys) {
@@ -42,8 +41,8 @@ HWY_INLINE std::uint64_t covered_of(const std::uint64_t* keys) {
   return ~empty;
 }
 
-/// Numbers the triangles that rows of blocks see from `row` on, as many as there is room for, and
-/// sets places and end_row. Returns how many there are.
+/// Numbers the triangles seen by rows of blocks from `row` on, while there is room, and sets places
+/// and end_row. Returns their number.
 HWY_INLINE std::size_t find_triangles(const FrameGeometry& frame, const BinSurface& bin, int row,
                                       SeenBin& seen) {
   std::memset(seen.table, 0, sizeof seen.table);
@@ -63,9 +62,9 @@ HWY_INLINE std::size_t find_triangles(const FrameGeometry& frame, const BinSurfa
         const int i = std::countr_zero(starts);
         const std::uint64_t low = keys[i] & kIdMask;
         std::uint64_t& entry = seen.table[low % std::size(seen.table)];
-        // Without a branch, which nobody could predict, and of which compilers make one of `?:`. A
-        // triangle may be there twice: what the table forgets costs only time. That it holds the
-        // low part too spares a load of what was stored just before.
+        // Branch-free, since the branch is unpredictable and compilers make one of `?:`. A triangle
+        // may be listed twice: what the table forgets costs only time. With the low part in the
+        // entry nothing is loaded that was just stored.
         const std::uint64_t next = low << 16 | count;
         const std::uint64_t is_new = entry >> 16 != low ? 1 : 0;
         const std::uint64_t known = entry ^ ((entry ^ next) & (0U - is_new));
@@ -79,9 +78,9 @@ HWY_INLINE std::size_t find_triangles(const FrameGeometry& frame, const BinSurfa
   return count;
 }
 
-/// Sets up the first `count` triangles of `seen`, group after group: find(low parts of their keys,
-/// how many, group) when the group before is not yet set up, then set_up(number of the first, how
-/// many, group). `finder` can prefetch() by low part.
+/// Sets up the first `count` triangles of `seen` by groups. Calls find(their low parts, number,
+/// group) before the previous group is set up, and then set_up(first triangle, number, group).
+/// `finder` can prefetch() by low part.
 template <class Group, class Finder, class Find, class SetUp>
 HWY_INLINE void set_up_bin(std::size_t count, const SeenBin& seen, Finder& finder, const Find& find,
                            const SetUp& set_up) {

@@ -4,7 +4,7 @@
 namespace rastrum::raster {
 
 bool is_fine(const BinSurface& bin) noexcept {
-  // Two pixels of a block that lie apart mostly see two triangles.
+  // Counts blocks in which two distant pixels see different triangles.
   int pairs = 0, differ = 0;
   for (int row = 0; row < block_rows(bin.rect); ++row)
     for (int column = 0; column < block_columns(bin.rect); ++column) {

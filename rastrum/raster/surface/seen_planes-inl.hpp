@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Finds the triangles that a block sees, and sets up the planes of their weights, a triangle a
-// lane.
+// Finds the triangles that a block sees and sets up their weight planes, a triangle a lane.
 #if defined(RASTRUM_RASTER_SURFACE_SEEN_PLANES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RASTRUM_RASTER_SURFACE_SEEN_PLANES_INL_HPP
 #undef RASTRUM_RASTER_SURFACE_SEEN_PLANES_INL_HPP
@@ -26,7 +25,7 @@ HWY_BEFORE_NAMESPACE();
 namespace rastrum::raster::HWY_NAMESPACE {
 namespace {
 
-/// Sets the planes of triangles first to first + n, n ≤ kLanes, which have been found.
+/// Sets the planes of the found triangles first to first + n, n ≤ kLanes.
 HWY_INLINE void set_seen_planes(const FrameGeometry& frame, std::size_t first, std::size_t n,
                                 SeenPlanes& seen) {
   const float* at[3][kLanes];
@@ -50,7 +49,7 @@ HWY_INLINE void set_seen_planes(const FrameGeometry& frame, std::size_t first, s
   }
 }
 
-/// SeenKernels::see. A loop for each step, so that cache misses of several triangles overlap.
+/// SeenKernels::see. Each step has its own loop, so that cache misses of several triangles overlap.
 HWY_INLINE void see_planes(const FrameGeometry& frame, const VisibleBlock& block, SeenPlanes& out) {
   if (out.frame != frame.number || frame.number == 0)
     find_anew(block.keys, block.covered, out);

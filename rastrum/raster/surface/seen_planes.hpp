@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Lists the triangles that a block sees with the float64 planes of their weights, and interpolates
-// many pixels by them. Outputs, numbers and wireframes use it. Operations and their order are those
-// of interpolate.hpp and surface_scalars.cpp, so the bits are too.
+// many pixels by them, for outputs, numbers and wireframes. Operations, order and bits are those of
+// interpolate.hpp and surface_scalars.cpp.
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@
 
 namespace rastrum::raster {
 
-/// WeightPlanes of several triangles, number by number: p[c] is kP + 3 c, and so on. A bin keeps
-/// them in pairs, two numbers that follow each other.
+/// WeightPlanes of several triangles, by number: p[c] is kP + 3 c, and so on. A bin stores two
+/// consecutive numbers as a pair.
 template <std::size_t kCount>
 struct PlaneTable {
   enum Number : std::size_t { kX0, kY0, kP, kQ, kR, kNumbers = kP + 9 };
@@ -45,17 +45,17 @@ struct PlaneTable {
   }
 };
 
-/// The different triangles of a block, with what interpolation by their corners begins from.
+/// The different triangles of a block, with what interpolation needs.
 struct SeenPlanes : SeenTriangles {
-  /// FrameGeometry::number of the frame whose triangles these are; 0: there are none yet. Blocks
-  /// side by side mostly see the same ones, which are then set up once.
+  /// FrameGeometry::number of these triangles' frame; 0: there are none. Neighbouring blocks mostly
+  /// see the same triangles, which are then set up once.
   std::uint64_t frame = 0;
   const Draw* draw[64];
-  Draw::OfCopy part[64];        ///< the triangle of the draw's mesh, and which copy of the mesh
-  std::uint32_t vertex[64][3];  ///< as Draw::vertices has them
+  Draw::OfCopy part[64];        ///< the triangle of the mesh, and which copy
+  std::uint32_t vertex[64][3];  ///< as in Draw::vertices
   PlaneTable<64> planes;
 
-  /// Triangle k and its vertices as those of its mesh; nothing else is set.
+  /// Triangle k and its vertices, numbered within its mesh; sets nothing else.
   [[nodiscard]] Fragment fragment(std::size_t k) const {
     Fragment f;
     f.id = kIdMask - low[k];
@@ -64,7 +64,7 @@ struct SeenPlanes : SeenTriangles {
       f.vertex[c] = vertex[k][c] - draw[k]->first_vertex_of(part[k].copy);
     return f;
   }
-  /// The pixels of `among` that see triangles for which is(k) holds.
+  /// The pixels of `among` whose triangles fulfil is(k).
   template <class Is>
   [[nodiscard]] std::uint64_t pixels_where(std::uint64_t among, const Is& is) const {
     std::uint64_t triangles = 0, pixels = 0;
@@ -74,28 +74,27 @@ struct SeenPlanes : SeenTriangles {
   }
 };
 
-/// A number for each pixel of a block, or for each triangle of SeenPlanes.
 struct alignas(64) Numbers64 : std::array<double, 64> {};
 using ByCorner = std::array<Numbers64, 3>;
 
-/// Each sets the numbers of the pixels that it is asked for; others keep theirs or become anything.
+/// Each sets numbers of the wanted pixels. Others are unchanged or undefined.
 struct SeenKernels {
   /// Finds the triangles of the covered pixels, whose draws must be triangles. `out` has those of
   /// another block, or none.
   void (*see)(const FrameGeometry& frame, const VisibleBlock& block, SeenPlanes& out) noexcept;
-  /// shares_at at the covered pixels, of each corner.
+  /// shares_at of each corner at the covered pixels.
   void (*shares)(const SeenPlanes& seen, const VisibleBlock& block, ByCorner& out) noexcept;
-  /// The shares of corners 1 and 2 of all 64 pixels, rounded to float32.
+  /// The shares of corners 1 and 2 at all 64 pixels, as float32.
   void (*barycentrics)(const ByCorner& shares, Vec2* out) noexcept;
-  /// The places in the world at the pixels `mask`: `corner` has those of the corners in object
-  /// space, by axis.
+  /// World positions at the pixels `mask`. `corner`: object-space positions of the corners, by
+  /// axis.
   void (*positions)(const SeenPlanes& seen, const ByCorner& shares, std::uint64_t mask,
                     const ByCorner (&corner)[3], const Mat4d& object_to_world, Vec3* out) noexcept;
-  /// Interpolates the corners' numbers at the pixels `mask`; the result lies between them.
+  /// Interpolates the corners' numbers at the pixels `mask`. The result lies between them.
   void (*numbers)(const SeenPlanes& seen, const ByCorner& shares, std::uint64_t mask,
                   const ByCorner& corner, Numbers64& out) noexcept;
 };
-/// Null: that instruction set has none.
+/// Null: the instruction set has none.
 [[nodiscard]] const SeenKernels* seen_kernels(Isa isa) noexcept;
 
 }  // namespace rastrum::raster

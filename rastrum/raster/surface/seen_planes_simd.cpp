@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Triangles of a block and what is interpolated by their float64 weights, compiled once per
-// instruction set; see seen_planes.hpp.
+// A block's triangles and interpolation by their float64 weights (seen_planes.hpp), compiled once
+// per instruction set.
 
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
@@ -23,13 +23,12 @@ void see(const FrameGeometry& frame, const VisibleBlock& block, SeenPlanes& out)
   see_planes(frame, block, out);
 }
 
-/// Returns triangle 0's number for every pixel: the block sees no other.
+/// For a block that sees only triangle 0.
 struct OneLookup {
   explicit HWY_INLINE OneLookup(I /*place*/) {}
   HWY_INLINE Wide operator()(const double* values) const { return wide(values[0]); }
 };
 
-/// Calls use(first, lookup, offset of a group's numbers, mask).
 template <class Use>
 HWY_INLINE void for_each_seen(const SeenPlanes& seen, std::uint64_t pixels, const Use& use) {
   const auto group = [&](std::size_t first, std::size_t g, const auto& look, auto mine)

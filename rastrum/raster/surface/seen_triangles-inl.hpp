@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Finds the different triangles that a block's pixels see, and brings their values from memory into
-// lanes, a triangle a lane.
+// Finds the different triangles that a block's pixels see, and loads their values into lanes, a
+// triangle a lane.
 #if defined(RASTRUM_RASTER_SURFACE_SEEN_TRIANGLES_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RASTRUM_RASTER_SURFACE_SEEN_TRIANGLES_INL_HPP
 #undef RASTRUM_RASTER_SURFACE_SEEN_TRIANGLES_INL_HPP
@@ -30,7 +30,7 @@ constexpr std::size_t kQuads = kLanes / 4;
 using F128 = hn::Full128<float>;
 using V128 = hn::Vec<F128>;
 
-/// Covered pixels whose left neighbour is in another row, sees another triangle, or nothing.
+/// Covered pixels whose left neighbour is in another row or sees another triangle or nothing.
 HWY_INLINE std::uint64_t run_starts(const std::uint64_t* keys, std::uint64_t covered) {
   const hn::CappedTag<std::uint64_t, 8> d;
   constexpr int kStep = static_cast<int>(hn::MaxLanes(hn::CappedTag<std::uint64_t, 8>()));
@@ -51,7 +51,7 @@ HWY_INLINE void set_run(SeenTriangles& seen, int at, std::uint64_t number) {
   const std::uint64_t run = number * 0x0101010101010101U;
   std::memcpy(seen.place + at, &run, sizeof run);
 }
-/// Forgets all triangles, and lists those of the runs that begin at `starts`.
+/// Lists only the triangles of the runs that begin at `starts`.
 HWY_INLINE void list_anew(const std::uint64_t* keys, std::uint64_t starts, SeenTriangles& seen) {
   std::memset(seen.table, 0, sizeof seen.table);
   std::uint64_t count = 0;
@@ -59,7 +59,7 @@ HWY_INLINE void list_anew(const std::uint64_t* keys, std::uint64_t starts, SeenT
     const int i = std::countr_zero(starts);
     const std::uint64_t low = keys[i] & kIdMask;
     std::uint64_t& entry = seen.table[low % std::size(seen.table)];
-    // Without a branch, which could not be predicted, and of which compilers make one of `?:`.
+    // Branch-free, since the branch is unpredictable and compilers make one of `?:`.
     const std::uint64_t next = low << 8 | count;
     const std::uint64_t is_new = entry >> 8 != low ? 1 : 0;
     const std::uint64_t known = entry ^ ((entry ^ next) & (0U - is_new));
@@ -70,8 +70,8 @@ HWY_INLINE void list_anew(const std::uint64_t* keys, std::uint64_t starts, SeenT
   }
   seen.count = count;
 }
-/// Finds the place of each pixel of the runs that begin at `starts`. Returns false where a triangle
-/// was not there before, so that all of them have to be set up; then there are only these.
+/// Finds the place of each pixel of the runs that begin at `starts`. False: a triangle was new, so
+/// the list now has only these, all to be set up.
 HWY_INLINE bool find_places(const std::uint64_t* keys, std::uint64_t starts, SeenTriangles& seen) {
   for (std::uint64_t rest = starts; rest != 0; rest &= rest - 1) {
     const int i = std::countr_zero(rest);
@@ -85,13 +85,13 @@ HWY_INLINE bool find_places(const std::uint64_t* keys, std::uint64_t starts, See
   }
   return true;
 }
-/// The same, whatever was there before, which need not have been set.
+/// The same from nothing; `seen` need not have been set.
 HWY_INLINE void find_anew(const std::uint64_t* keys, std::uint64_t covered, SeenTriangles& seen) {
   std::memset(seen.place, 0, sizeof seen.place);
   list_anew(keys, run_starts(keys, covered), seen);
 }
 
-/// The pixels of `among` whose key has the low part `low`, which is not 0.
+/// The pixels of `among` whose key has the low part `low` ≠ 0.
 HWY_INLINE std::uint64_t pixels_of(const std::uint64_t* keys, std::uint64_t low,
                                    std::uint64_t among) {
   const hn::CappedTag<std::uint64_t, 8> d;
@@ -123,7 +123,7 @@ template <class At>
 HWY_INLINE V4 transposed(const At& at) {
   const F32 d;
   const hn::Repartition<double, F32> d64;
-  // Every fourth one, so that quads are whole where blocks of 128 bits have been transposed.
+  // Takes every fourth one, so that transposing in blocks of 128 bits makes whole quads.
   const auto fourths = [&](std::size_t first) HWY_ATTR {
     V128 quad[kQuads];
     for (std::size_t q = 0; q < kQuads; ++q) quad[q] = hn::LoadU(F128{}, at(q * 4 + first));
@@ -140,14 +140,14 @@ HWY_INLINE V4 transposed(const At& at) {
           hn::BitCast(d, hn::InterleaveUpper(d64, zw01, zw23))};
 }
 
-/// The same for the n lanes that are asked for: more permutations, but few lanes cost less.
+/// For n lanes: more permutations, but cheaper for few lanes.
 HWY_INLINE V4 load_transposed(const float* const (&at)[kLanes], std::size_t n) {
   if (n == kLanes) return transposed([&](std::size_t i) HWY_ATTR { return at[i]; });
   const F128 d;
   const hn::Repartition<double, F128> d64;
   V128 x[kQuads], y[kQuads], z[kQuads], w[kQuads];
   for (std::size_t q = 0; q < kQuads; ++q) {
-    if (q != 0 && q * 4 >= n) {  // whatever
+    if (q != 0 && q * 4 >= n) {  // any values
       x[q] = x[0], y[q] = y[0], z[q] = z[0], w[q] = w[0];
       continue;
     }
@@ -173,7 +173,7 @@ HWY_INLINE std::uint64_t bits_of(Mask mask) {
   std::memcpy(&bits, bytes, sizeof bits);
   return bits & ((std::uint64_t{1} << kLanes) - 1);
 }
-/// Lanes of the low bits of `bits`.
+/// The lanes of the low bits of `bits`.
 HWY_INLINE hn::Mask<F32> mask_of(std::uint64_t bits) {
   bits &= (std::uint64_t{1} << kLanes) - 1;
   std::uint8_t bytes[8];

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The different triangles of up to 64 pixels, and which one each sees.
 #pragma once
 
 #include <cstddef>
@@ -7,13 +6,13 @@
 
 namespace rastrum::raster {
 
-/// All 0: none. A triangle may be listed twice, which costs only time.
+/// All 0: none. A triangle listed twice costs only time.
 struct SeenTriangles {
   std::size_t count;
-  /// By some bits of the low part: low << 8 | number of one that has them. It holds the low part so
-  /// that nothing is loaded that the run before has just stored.
+  /// By some bits of the low part: low << 8 | number of a triangle with these bits. With the low
+  /// part here, nothing is loaded that the run before has just stored.
   std::uint64_t table[128];
-  std::uint64_t low[64 + 1];  ///< their keys' low parts, in the order in which they are met
+  std::uint64_t low[64 + 1];  ///< the keys' low parts, in order of appearance
   /// The number of each covered pixel's triangle; written in runs of 8.
   alignas(64) std::uint8_t place[64 + 8];
 };

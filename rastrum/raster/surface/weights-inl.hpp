@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The weights of triangles' corners, a triangle a lane, and the points of pixels at which they are
-// asked for. Two laws set them up: float32, which the lit shaders use where it is good enough
-// (lit_seen-inl.hpp), and the float64 of interpolate.hpp, which all else uses. Operations and their
-// order are those of the scalar forms, so the bits are too.
+// Weights of triangles' corners, a triangle a lane, and the points of pixels that they are for. The
+// lit shaders use float32 where it is good enough (lit_seen-inl.hpp), all else interpolate.hpp's
+// float64. Operations, order and bits are the scalar forms'.
 #if defined(RASTRUM_RASTER_SURFACE_WEIGHTS_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RASTRUM_RASTER_SURFACE_WEIGHTS_INL_HPP
 #undef RASTRUM_RASTER_SURFACE_WEIGHTS_INL_HPP
@@ -70,7 +69,7 @@ HWY_INLINE Wide operator/(const Wide& a, const Wide& b) {
   return {a.lower / b.lower, a.upper / b.upper};
 }
 
-/// The centres of a block's pixels, relative to the corner of the first one, px.
+/// The centres of a block's pixels, px from its first corner.
 struct alignas(64) BlockSamples {
   float x[64], y[64];
 };
@@ -83,7 +82,7 @@ constexpr BlockSamples kSample = [] {
   return s;
 }();
 
-/// The points at which pixels first to first + kLanes of a block are shaded, px.
+/// Where pixels first to first + kLanes of a block are shaded, px.
 struct Points {
   F px, py;
 
@@ -95,7 +94,7 @@ struct Points {
     py = py + hn::Load(F32{}, block.points->dy + first);
   }
 };
-/// The same in float64, where sums are not rounded.
+/// In float64, where the sums are exact.
 struct WidePoints {
   Wide x, y;
 
@@ -108,11 +107,10 @@ struct WidePoints {
   }
 };
 
-/// The corners of a triangle a lane, as they were projected.
 struct ProjectedCorners {
   V4 v[3];
 
-  /// `at`: where each ProjectedVertex is; n lanes are read.
+  /// `at`: the addresses of ProjectedVertices; reads n lanes.
   HWY_INLINE ProjectedCorners(const float* const (&at)[3][kLanes], std::size_t n)
       : v{load_transposed(at[0], n), load_transposed(at[1], n), load_transposed(at[2], n)} {}
 
@@ -120,7 +118,7 @@ struct ProjectedCorners {
   [[nodiscard]] HWY_INLINE I x(int c) const { return hn::BitCast(I32{}, v[c].x); }
   [[nodiscard]] HWY_INLINE I y(int c) const { return hn::BitCast(I32{}, v[c].y); }
   [[nodiscard]] HWY_INLINE F inv_w(int c) const { return v[c].w; }
-  /// The lanes of triangles that were clipped, whose projected corners are not valid.
+  /// The lanes of clipped triangles, whose projected corners are not valid.
   [[nodiscard]] HWY_INLINE std::uint64_t clipped() const {
     const auto is_clipped = [&](int c) HWY_ATTR {
       return hn::RebindMask(F32{}, hn::Eq(x(c), hn::Set(I32{}, kNeedsClip)));
@@ -140,7 +138,7 @@ HWY_INLINE Wide in_px<Wide>(I fx8) {
   return wide(fx8) * wide(1.0 / kSubpixels);
 }
 
-/// The edges from corner 0 to the others, px, in float32 (F) or float64 (Wide).
+/// The edges from corner 0, px, in float32 (F) or float64 (Wide).
 template <class N>
 struct Edges {
   N x1, y1, x2, y2;
@@ -154,8 +152,7 @@ struct Edges {
   [[nodiscard]] HWY_INLINE N determinant() const { return x1 * y2 - x2 * y1; }
 };
 
-/// weight_planes, of triangles first to first + kLanes. Triangles that were clipped get planes
-/// that are not valid.
+/// weight_planes of triangles first to first + kLanes; not valid for clipped ones.
 template <std::size_t kCount>
 HWY_INLINE void set_planes(const ProjectedCorners& corner, PlaneTable<kCount>& out,
                            std::size_t first = 0) {
@@ -179,7 +176,7 @@ HWY_INLINE void set_planes(const ProjectedCorners& corner, PlaneTable<kCount>& o
   put_corner(2, p2 * w2, q2 * w2, wide(0.0));
 }
 
-/// Looks up numbers of the lanes of triangles; `place`: the lane of each pixel's triangle.
+/// Looks up numbers in the lanes of triangles; `place`: each pixel's lane.
 struct WideLookup {
   using Indices = decltype(hn::IndicesFromVec(F64{}, hn::Zero(I64{})));
   Indices lower, upper;
@@ -213,7 +210,7 @@ struct WideLookup {
   }
 };
 
-/// The same of float32; `lane`: that of each pixel's triangle.
+/// In float32; `lane`: that of each pixel's triangle.
 struct FloatLookup {
   decltype(hn::IndicesFromVec(F32{}, hn::Zero(I32{}))) lane;
 
@@ -225,12 +222,11 @@ struct FloatLookup {
   }
 };
 
-/// Numbers of pixels first to first + kLanes.
 HWY_INLINE I numbers_of(const std::uint8_t* place, std::size_t first) {
   return hn::PromoteTo(I32{}, hn::Load(hn::Rebind<std::uint8_t, I32>{}, place + first));
 }
-/// Calls use(first, group, Lookup, mask) for pixels first to first + kLanes of which some are
-/// `covered` and see triangles of a group of kLanes: the mask has all that do, covered or not.
+/// Calls use(first, group, Lookup, mask) for each kLanes pixels from `first` with a `covered` one
+/// that sees a triangle of a group of kLanes. The mask has all pixels that do, covered or not.
 template <class Lookup, class Use>
 HWY_INLINE void for_each_group(const std::uint8_t* place, std::size_t triangles,
                                std::uint64_t covered, const Use& use) {
@@ -252,7 +248,6 @@ HWY_INLINE void for_each_group(const std::uint8_t* place, std::size_t triangles,
   }
 }
 
-/// shares_at, of weights.
 HWY_INLINE void make_shares(Wide (&b)[3]) {
   const auto in_range = [](D v) HWY_ATTR {
     const D zero = hn::Zero(F64{}), one = hn::Set(F64{}, 1.0);
@@ -266,7 +261,7 @@ HWY_INLINE void make_shares(Wide (&b)[3]) {
   const Wide inside = b[0] + b[1] + b[2];
   for (Wide& share : b) share = share / inside;
 }
-/// The same of one triangle, at kLanes points.
+/// For one triangle, at kLanes points.
 HWY_INLINE void shares_at(const WeightPlanes& w, const Wide& x, const Wide& y, Wide (&b)[3]) {
   const Wide dx = x - wide(w.x0), dy = y - wide(w.y0);
   for (int c = 0; c < 3; ++c) b[c] = wide(w.r[c]) + wide(w.p[c]) * dx + wide(w.q[c]) * dy;
