@@ -27,7 +27,7 @@ namespace {
 
 constexpr std::size_t kLongestHost = 64;
 
-/// The end of a temporary's name on this host. Each container is a host.
+/// The suffix of this host's temporaries. Each container is a host.
 const std::string& suffix() {
   static const std::string all = [] {
     char name[kLongestHost + 1] = {};
@@ -37,7 +37,7 @@ const std::string& suffix() {
   return all;
 }
 
-/// The target of links, also if it does not exist. For a circle of links any of its files.
+/// Follows links, also to a file that does not exist. In a circle of links it returns any of them.
 fs::path follow_links(fs::path file) {
   constexpr int kMostLinks = 40;  // Linux's
   std::error_code error;
@@ -53,20 +53,20 @@ fs::path folder_of(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-/// Gives `fd`, which is to replace `target`, its owner and mode.
+/// Gives `fd`, which will replace `target`, its owner and mode.
 void take_mode(int fd, const fs::path& target) {
   struct stat old {};
   if (::stat(target.c_str(), &old) != 0) return;
   mode_t mode = old.st_mode & 0777;
-  // The owner stays if the system lets us give the file away. A group that cannot be set gets no
-  // more rights than everybody has.
+  // We may not be allowed to set the owner. A group that cannot be set gets no more rights than
+  // everybody.
   if (::fchown(fd, old.st_uid, old.st_gid) != 0 &&
       ::fchown(fd, static_cast<uid_t>(-1), old.st_gid) != 0)
     mode &= ~mode_t{0070} | ((mode & 0007U) << 3U);
   ::fchmod(fd, mode);
 }
 
-/// A file without a name in `folder`; −1: errno says why not.
+/// A nameless file in `folder`; −1: errno says why not.
 int open_nameless(const std::string& folder) {
   const int fd = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (fd >= 0) return fd;
@@ -76,7 +76,7 @@ int open_nameless(const std::string& folder) {
   return named;
 }
 
-/// The temporaries of this process. Whoever makes, renames or removes one holds the mutex.
+/// The temporaries of this process. Making, renaming or removing one needs the mutex.
 struct Live {
   std::mutex mutex;
   std::set<std::string> names;
@@ -93,7 +93,7 @@ void forget(const fs::path& temporary) {
   all.names.erase(temporary.string());
 }
 
-/// Whether the file of `fd` is ours from now on. False: it has been taken for one that was left.
+/// Whether the file of `fd` is now ours. False: another process took it for an abandoned one.
 bool keep(int fd) {
   if (::flock(fd, LOCK_EX | LOCK_NB) != 0) return errno != EWOULDBLOCK;
   struct stat info {};
@@ -107,7 +107,7 @@ std::string why_not_writable(const fs::path& file) {
   const bool exists = ::stat(file.c_str(), &info) == 0;
   if (!exists && errno == ELOOP) return std::strerror(errno);
   if (exists && S_ISDIR(info.st_mode)) return "it is a directory";
-  // Also for root, who could write it, but hardly wants to lose it.
+  // Refused for root, too, who hardly wants to lose the file.
   if (exists && S_ISREG(info.st_mode) && (info.st_mode & 0222) == 0) return "it is read-only";
   if (exists && ::access(file.c_str(), W_OK) != 0) return std::strerror(errno);
   if (exists && !S_ISREG(info.st_mode)) return {};  // a device, a pipe: written in place
@@ -134,7 +134,7 @@ struct AtomicFile::Impl {
   fs::path target;     ///< links resolved
   fs::path temporary;  ///< empty: written directly, or sent
   std::FILE* stream = nullptr;
-  int lock = -1;  ///< the temporary's, so that others see that it is in work
+  int lock = -1;  ///< of the temporary; shows others that it is in use
   int sent = -1;  ///< where the bytes of a spooled file go
 };
 
@@ -165,8 +165,8 @@ AtomicFile::Impl::Impl(StandardOutput) : asked("standard output") {
 }
 
 void AtomicFile::Impl::open_temporary() {
-  // Two writers of one name, in this process or another, must not meet in one temporary; another
-  // may have our number, as the first process of every container has.
+  // Writers of one name must not share a temporary. Another process may have our number, as the
+  // first one of every container has.
   static std::atomic<unsigned> serial{0};
   constexpr int kTries = 100;
   constexpr std::size_t kLongest = 140;  // bytes, so that the rest of the name fits
@@ -299,7 +299,7 @@ std::FILE* open_scratch_file() {
 
 void abandon_files() noexcept {
   Live& all = live();
-  all.mutex.lock();  // and never unlocked: see the header
+  all.mutex.lock();  // never unlocked (see the header)
   for (const std::string& name : all.names) ::unlink(name.c_str());
 }
 

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The entry `name` of a folder, or else the first in the alphabet that differs by case alone.
+/// The entry `name` of a folder, else the alphabetically first that differs by case alone.
 std::optional<fs::path> entry(const fs::path& folder, const std::string& name) {
   std::error_code ignored;
   if (fs::exists(folder / name, ignored)) return folder / name;

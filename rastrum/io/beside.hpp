@@ -13,16 +13,15 @@ struct FoundFile {
   bool as_named = true;  ///< false: `path` has another name than the mesh file says
 };
 
-/// The file that `name` leads to from `folder`. The name may stand in quotes and contain
-/// backslashes. If there is no such file, takes the longest end of the name that leads to one
-/// ("a/b.png" of "C:\\me\\a\\b.png", else "b.png"), if necessary in letters of another case. If
-/// there is none either, returns `name` in `folder`. O(names in the folders on the way).
+/// The file that `name`, which may be quoted and contain backslashes, leads to from `folder`. If
+/// there is none, the longest end of the name that leads to one counts ("a/b.png" of
+/// "C:\\me\\a\\b.png", else "b.png"), if necessary in another case. Else returns `name` in
+/// `folder`. O(names in the folders on the way).
 [[nodiscard]] FoundFile find_beside(const std::filesystem::path& folder, std::string_view name);
 
-/// Adds a name to a list for a message, and keeps the list readably short.
+/// Adds a name to a list for a message, and keeps the list short.
 void note_name(std::string& list, std::string_view name);
 
-/// Without the quotes that stand around it.
 [[nodiscard]] std::string_view unquoted(std::string_view name);
 
 }  // namespace rastrum::io

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Binary STL: a header of 80 bytes, the number of facets, the facets. Colours are in the attribute
-// of a facet in two ways. VisCAM and SolidView: bit 15 is set if there is a colour; its red is in
-// the highest five of the other bits. Magics: the header has COLOR= and the red, green, blue and
-// alpha of the whole; bit 15 is set if a facet has that colour, else its colour has red in the
-// lowest five bits.
+// Binary STL: a header of 80 bytes, the number of facets, the facets. A facet's attribute has its
+// colour in one of two ways. VisCAM and SolidView: bit 15 marks a colour, with red in the highest
+// five of the other bits. Magics: the header has COLOR= and the RGBA of the whole. Bit 15 marks
+// facets of that colour; others have red in the lowest five bits.
 #pragma once
 
 #include <cstddef>
@@ -19,17 +18,17 @@ namespace rastrum::io {
 namespace stl {
 
 inline constexpr std::size_t kHeader = 84, kFacet = 50;
-inline constexpr std::size_t kCorners = 12;  ///< in a facet, behind its normal: nine float32
+inline constexpr std::size_t kCorners = 12;  ///< in a facet, after its normal: nine float32
 
-/// How many facets the header says there are; 0: it is cut off.
+/// The header's number of facets; 0: it is cut off.
 [[nodiscard]] inline std::size_t said_count(Bytes bytes) {
   return bytes.size() < kHeader ? 0 : load_little_endian<std::uint32_t>(bytes.data() + 80);
 }
-/// Whether the file is as long as its header says: it is binary, then, whatever it begins with.
+/// Whether the size fits the header: then the file is binary, whatever it begins with.
 [[nodiscard]] inline bool is_exact(Bytes bytes) {
   return bytes.size() >= kHeader && bytes.size() == kHeader + said_count(bytes) * kFacet;
 }
-/// How many facets there are. Calls fail(why), which throws, if these are none of a binary STL.
+/// The number of facets. Calls fail(why), which throws, if the bytes are no binary STL.
 template <class Fail>
 [[nodiscard]] std::size_t facet_count(Bytes bytes, const Fail& fail) {
   if (bytes.size() < kHeader)
@@ -45,11 +44,10 @@ template <class Fail>
 
 class StlColors {
  public:
-  /// Begins the header of a selection of a large file whose attributes are colours, even if those
-  /// of the selection do not show it.
+  /// Begins the header of a large file's selection whose attributes are colours, because its own
+  /// facets might not show it.
   static constexpr std::string_view kMark = "facets have colours ";
 
-  /// `header`: its 80 bytes.
   explicit StlColors(Bytes header) {
     const std::string_view text = as_text(header).substr(0, 80);
     marked_ = text.starts_with(kMark);
@@ -64,7 +62,6 @@ class StlColors {
       whole_ = {channel(0), channel(1), channel(2), channel(3)};
       break;
     }
-    // With a highlight and the like.
     has_material_ = text.find("MATERIAL=") != std::string_view::npos;
   }
 
@@ -74,12 +71,12 @@ class StlColors {
   [[nodiscard]] static std::uint16_t attribute(const std::byte* facet) {
     return load_little_endian<std::uint16_t>(facet + 48);
   }
-  /// Whether an attribute shows that the file's attributes are colours. For Magics any that is not
-  /// 0: a file with a header and only zeros has no colours of facets.
+  /// Whether an attribute shows that attributes are colours. In Magics any but 0 does: a file of
+  /// zeros has no facet colours.
   [[nodiscard]] bool says_so(std::uint16_t attribute) const {
     return is_magics_ ? attribute != 0 : (attribute & kBit15) != 0;
   }
-  /// Whether facets have colours of their own. O(facets).
+  /// O(facets).
   [[nodiscard]] bool are_used(const std::byte* facet, std::size_t count) const {
     if (marked_) return true;
     for (std::size_t t = 0; t < count; ++t, facet += stl::kFacet)
@@ -87,7 +84,6 @@ class StlColors {
     return false;
   }
 
-  /// The colours of a file.
   [[nodiscard]] Attribute<Vec4> read(const std::byte* facet, std::size_t count,
                                      Budget& budget) const {
     FaceColors colors(budget);

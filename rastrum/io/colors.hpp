@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Colours of mesh files: numbers in some unit, one colour a vertex or one a face.
+// Colours of mesh files: numbers in some unit, per vertex or face.
 #pragma once
 
 #include <algorithm>
@@ -20,10 +20,10 @@
 
 namespace rastrum::io {
 
-/// The plain shaders' colour, for vertices and faces without one among others that have one.
+/// The plain shaders' colour, for what has none where others have one.
 inline constexpr Vec4 kPlainColor{0.8F, 0.7F, 0.6F, 1};
 
-/// The largest channels of the colours of a file's vertices or faces, which decide their unit.
+/// The largest channels of a file's vertex or face colours, which decide their unit.
 struct LargestChannels {
   float rgb = 0, alpha = 0;
   void add(const Vec4& c) {
@@ -36,9 +36,9 @@ struct LargestChannels {
   }
 };
 
-/// The number that stands for full intensity, if `largest` is the largest of all. Integers: the
-/// least of 255, 65,535 and `most`, the largest of their type, that is not below it. Floats (`most`
-/// 1): 1 if it is below 2, so that colours a little brighter than white stay; else 255 or 65,535.
+/// The number for full intensity, given the largest of all. Integers: the least of 255, 65,535 and
+/// `most`, the largest of their type, that is not below it. Floats (`most` 1): 1 if it is below 2,
+/// so that colours a little brighter than white stay; else 255 or 65,535.
 [[nodiscard]] inline float color_unit(float largest, double most) {
   if (most == 1 && largest < 2) return 1;
   for (const float unit : {255.0F, 65535.0F})
@@ -46,7 +46,7 @@ struct LargestChannels {
   return static_cast<float>(most);
 }
 
-/// A warning for a unit that the numbers' type does not suggest.
+/// A warning for a unit that the type does not suggest.
 [[nodiscard]] inline std::string said_unit(float largest, float unit,
                                            const std::string& whose = "its colours") {
   const auto text = [](float x) { return std::to_string(static_cast<std::int64_t>(x)); };
@@ -59,15 +59,15 @@ inline void scale_colors(std::span<Vec4> colors, float rgb_unit, float alpha_uni
   for (Vec4& c : colors) c = {c.x * rgb, c.y * rgb, c.z * rgb, c.w * alpha};
 }
 
-/// Colours of faces, for all corners of their triangles; each colour is kept once.
+/// Colours of faces, for all corners. Equal colours are stored once.
 class FaceColors {
  public:
   explicit FaceColors(Budget& budget) : budget_(budget) {}
-  /// Gives `color` to the triangles from the first without an entry up to `triangles`.
+  /// Gives `color` to the triangles without an entry, up to `triangles`.
   void add(const Vec4& color, std::size_t triangles) {
     if (triangles > numbers_.size()) budget_.resize(numbers_, triangles, number(color));
   }
-  /// The same for triangles without a colour.
+  /// Likewise, without a colour.
   void add_none(std::size_t triangles) {
     if (triangles > numbers_.size()) budget_.resize(numbers_, triangles, kNone);
   }

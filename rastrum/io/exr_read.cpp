@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Colours of OpenEXR files, as linear light. Without the library at build time the function says
-// what to install.
+// Colours of OpenEXR files, as linear light. Without the library an error says what to install.
 #include <string>
 
 #include <rastrum/io/parse.hpp>
@@ -25,7 +24,6 @@ namespace rastrum::io {
 #ifdef RASTRUM_HAS_OPENEXR
 namespace {
 
-/// Reads memory.
 class Stream final : public Imf::IStream {
  public:
   Stream(Bytes bytes, const std::string& name) : Imf::IStream(name.c_str()), bytes_(bytes) {}
@@ -51,7 +49,6 @@ class Stream final : public Imf::IStream {
   throw Error(Errc::unsupported, name + ": " + what);
 }
 
-/// Width and height.
 std::pair<int, int> size_of(const Imf::Header& header, std::size_t bytes, const std::string& name) {
   const Imath::Box2i& data = header.dataWindow();
   if (!(data == header.displayWindow()))
@@ -61,7 +58,7 @@ std::pair<int, int> size_of(const Imf::Header& header, std::size_t bytes, const 
   if (w < 1 || h < 1 || w > kMaxImageSize || h > kMaxImageSize)
     refuse(name, "its size " + std::to_string(w) + "x" + std::to_string(h) +
                      " is outside 1x1 to 32768x32768");
-  // No way to compress makes more than some thousand bytes of one.
+  // No compression packs more than some thousand bytes into one.
   if (static_cast<std::size_t>(w * h) / 2048 > bytes)
     throw Error(Errc::bad_format, name + ": is too short for its size");
   return {static_cast<int>(w), static_cast<int>(h)};
@@ -74,7 +71,7 @@ Image<Vec3> read(Bytes bytes, const std::string& name, Budget& budget) {
   const auto [width, height] = size_of(header, bytes.size(), name);
   const Imf::ChannelList& channels = header.channels();
   const auto has = [&](const char* channel) { return channels.findChannel(channel) != nullptr; };
-  const bool grey = !has("R") && has("Y") && !has("X");  // X, Y and Z are places
+  const bool grey = !has("R") && has("Y") && !has("X");  // X, Y and Z are positions
   const char* names[3] = {"R", "G", "B"};
   for (const char*& channel : names) {
     if (grey) channel = "Y";

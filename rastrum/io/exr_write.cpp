@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// OpenEXR, 32-bit float channels. Without the library at build time the functions say what to
-// install.
+// OpenEXR, 32-bit float channels. Without the library an error says what to install.
 #include <string>
 
 #include <rastrum/io/rows.hpp>
@@ -21,7 +20,7 @@ namespace rastrum::io {
 #ifdef RASTRUM_HAS_OPENEXR
 namespace {
 
-/// OpenEXR seeks back to fill in its table of offsets; so the target must be seekable.
+/// OpenEXR seeks back to fill in its table of offsets, so the target must be seekable.
 class Stream final : public Imf::OStream {
  public:
   Stream(AtomicFile& file, const std::string& name) : Imf::OStream(name.c_str()), file_(file) {}
@@ -40,7 +39,6 @@ class Stream final : public Imf::OStream {
   AtomicFile& file_;
 };
 
-/// A channel for each float of a pixel, in order.
 template <class Pixel>
 constexpr std::array<const char*, 0> kNames{};
 template <>
@@ -50,7 +48,7 @@ constexpr std::array<const char*, 3> kNames<Vec3>{"X", "Y", "Z"};
 template <>
 constexpr std::array<const char*, 1> kNames<float>{"Z"};
 
-/// ZIPS compresses row by row, without loss.
+/// ZIPS is lossless and compresses row by row.
 template <class Pixel>
 Imf::Header header_of(int width, int height) {
   Imf::Header header(width, height);
@@ -60,7 +58,7 @@ Imf::Header header_of(int width, int height) {
   return header;
 }
 
-/// f(), whose exceptions are the library's.
+/// Calls f(). The library's exceptions become errors of `out`.
 template <class F>
 void guarded(AtomicFile& out, const F& f) {
   try {
@@ -80,7 +78,7 @@ class ExrRows final : public RowsOf<Pixel> {
   }
   void add(ImageView<const Pixel> rows) override {
     guarded(out_, [&] {
-      // Rows count from the picture's top. The library takes a pointer to non-const and only reads.
+      // Rows count from the picture's top. The library takes a non-const pointer but only reads.
       char* const base = const_cast<char*>(
           reinterpret_cast<const char*>(rows.data - exr_->currentScanLine() * rows.stride));
       Imf::FrameBuffer frame;
@@ -92,7 +90,6 @@ class ExrRows final : public RowsOf<Pixel> {
       exr_->writePixels(rows.height);
     });
   }
-  /// Writes where rows are.
   void finish() override {
     guarded(out_, [&] { exr_.reset(); });
   }

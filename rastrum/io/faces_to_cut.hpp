@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Faces of a file as triangles. If the positions of a face come later in the file, it is a fan at
-// first, and is cut when everything is read.
+// A file's faces as triangles. A face whose positions come later is a fan until everything is read.
 #pragma once
 
 #include <algorithm>
@@ -19,8 +18,8 @@ namespace rastrum::io {
 class FacesToCut {
  public:
   explicit FacesToCut(Budget& budget) : budget_(budget) {}
-  /// Calls f(i, j, k) for each triangle of a face of n corners, whose vertices are vertex(corner):
-  /// any integers. `at`: how many corners the triangles before it have.
+  /// Calls f(i, j, k) for each triangle of a face of n corners. vertex(corner) may be any integer.
+  /// `at`: how many corners the triangles before it have.
   template <class Position, class Vertex, class F>
   void add(std::size_t n, const std::vector<Position>& positions, std::size_t at,
            const Vertex& vertex, const F& f) {
@@ -35,13 +34,13 @@ class FacesToCut {
     budget_.add(later_, {at, n});
     for (std::size_t k = 2; k < n; ++k) f(std::size_t{0}, k - 1, k);
   }
-  /// Cuts the faces whose positions were not known. `corners`: arrays of one number a corner. The
-  /// first are the indices of positions, which must be in range.
+  /// Cuts the faces whose positions were unknown. `corners`: arrays of one number per corner, the
+  /// indices of positions first; these must be in range.
   template <class Position>
   void finish(const std::vector<Position>& positions,
               std::initializer_list<std::vector<std::uint32_t>*> corners) {
     for (const Later& face : later_) {
-      // Corner i as it lies in the fan: corners 0 and 1, then the last of each triangle.
+      // Corner i in the fan: corners 0 and 1, then the last of each triangle.
       const auto place = [&](std::size_t i) { return face.at + (i < 2 ? i : 3 * (i - 1) - 1); };
       std::vector<std::size_t> places;
       const std::vector<std::uint32_t>& indices = **corners.begin();
@@ -64,7 +63,7 @@ class FacesToCut {
     std::size_t at, corners;
   };
   Budget& budget_;
-  std::size_t largest_ = 3;  ///< corners of a face so far; triangles are not cut
+  std::size_t largest_ = 3;  ///< of a face so far; triangles are not cut
   FaceCutter cutter_;
   std::vector<Later> later_;
 };

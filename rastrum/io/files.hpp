@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Helpers of programs that read and write files: which files were read, so that none is replaced
-// (mapped_file.cpp), which can be written (atomic_file.cpp), and messages about them.
+// Helpers of programs: files that were read and must not be replaced (mapped_file.cpp), files that
+// can be written (atomic_file.cpp), messages.
 #pragma once
 
 #include <sys/stat.h>
@@ -11,25 +11,24 @@
 
 namespace rastrum::io {
 
-/// From now on the library remembers each file that it opens to read, by device and number. It
-/// remembers none before the first call. Thread-safe, as the next three.
+/// From now on the library remembers the files that it reads, by device and number. Thread-safe, as
+/// the next three.
 void remember_files_read();
-/// Remembers a file that will be read.
 void remember_read(const std::filesystem::path& file);
 void remember_read(const struct stat& file);
-/// Whether `file`, also by another name or a link, is a remembered file.
+/// Whether `file`, by any name or link, is a remembered file.
 [[nodiscard]] bool was_read(const std::filesystem::path& file);
 
-/// The reason why an AtomicFile of this name will fail, as far as that can be known; empty: none.
-/// Ask before an hour of work.
+/// Why an AtomicFile of this name will fail, as far as can be known; empty: it will not. Ask before
+/// an hour of work.
 [[nodiscard]] std::string why_not_writable(const std::filesystem::path& file);
 
-/// A nameless scratch file to write and read, in the first possible of TMPDIR, /tmp, /var/tmp, the
-/// working directory and memory; null: errno says why there is none.
+/// A nameless file in the first possible of TMPDIR, /tmp, /var/tmp, the working directory and
+/// memory; null: errno says why not.
 [[nodiscard]] std::FILE* open_scratch_file();
 
-/// `message`; if it is longer than 2,000 bytes, only its begin and end, with the number of bytes
-/// left out between them. Characters of UTF-8 stay whole.
+/// `message`; if longer than 2,000 bytes, its begin and end and the number of bytes between. UTF-8
+/// characters stay whole.
 [[nodiscard]] std::string shortened(std::string message);
 
 }  // namespace rastrum::io

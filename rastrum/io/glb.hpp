@@ -18,11 +18,11 @@ inline constexpr std::uint32_t kJsonChunk = 0x4E4F534A, kBinChunk = 0x004E4942;
 struct Glb {
   std::string_view text;
   std::optional<Bytes> bin;
-  std::size_t surplus = 0;  ///< bytes of the file behind the container's end
+  std::size_t surplus = 0;  ///< bytes after the container's end
 };
 
 [[nodiscard]] bool is_glb(Bytes bytes);
-/// Looks at headers alone. Throws Error{bad_format} or Error{unsupported}, which names the file.
+/// Looks at headers alone. Throws Error{bad_format | unsupported} naming the file.
 [[nodiscard]] Glb open_glb(Bytes bytes, const std::string& name);
 
 }  // namespace rastrum::io

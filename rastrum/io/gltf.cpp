@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// glTF 2.0 and GLB. The document is parsed (nlohmann::json), checked whole (gltf_check.cpp), then
-// the scene's nodes are walked depth-first; meshes, buffers, materials and images are read when
-// they are first used. Everything that moves becomes a Rig (gltf_rig.cpp) and is posed at rest. The
-// reader is our own: tinygltf 2.7 takes malformed documents for granted (it reads beyond buffers
-// and recurses without bound), drops numbers such as `1.0` where an index stands, and making it
-// safe needs these same checks over the same JSON.
+// glTF 2.0 and GLB. The document is parsed (nlohmann::json) and checked whole (gltf_check.cpp).
+// Then the scene's nodes are walked depth-first; meshes, buffers, materials and images are read
+// when first used. All that moves becomes a Rig (gltf_rig.cpp), posed at rest. The reader is our
+// own: tinygltf 2.7 trusts malformed documents (it reads beyond buffers and recurses without bound)
+// and drops indices written as `1.0`; making it safe needs these same checks.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -99,7 +98,7 @@ class GltfReader {
   }
 
  private:
-  /// The nodes of the default scene; without scenes, those that are no child.
+  /// The nodes of the default scene; without scenes, the nodes without parents.
   std::vector<std::size_t> roots() {
     std::vector<std::size_t> r;
     if (const std::size_t scenes = length(document_, "scenes"); scenes != 0) {
@@ -121,8 +120,8 @@ class GltfReader {
     return r;
   }
 
-  /// Depth-first with a stack of its own. Every node has at most one parent (checked), so that
-  /// from a root there are no cycles.
+  /// Depth-first, without recursion. A root has no cycles, since every node has at most one parent
+  /// (checked).
   void walk(std::size_t root) {
     std::vector<std::size_t> stack = {root};
     while (!stack.empty()) {
@@ -164,7 +163,7 @@ class GltfReader {
     scene_.lights.push_back(standing);
   }
 
-  /// A mesh that no node draws is read all the same: what is broken is refused, not drawn empty.
+  /// Broken meshes are refused, even if no node draws them.
   void check_unused_meshes() {
     std::vector<std::string> ignored;
     for (std::size_t i = 0, n = length(document_, "meshes"); i < n; ++i) {
@@ -195,7 +194,6 @@ class GltfReader {
     return Part{*std::move(mesh), std::move(shape)};
   }
 
-  /// A primitive in the scene, a mesh or another geometry. `shape` is Rig's, or none.
   struct Drawn {
     std::uint32_t mesh = 0;
     std::int32_t shape = Rig::kNone;
@@ -215,7 +213,7 @@ class GltfReader {
         g.name = owner.string("name", "");
         g.material = materials_.use(material);
       };
-      // A primitive without a material has glTF's default one, which is opaque.
+      // glTF's default material is opaque.
       const auto opaque = [&](std::vector<Vec4>& colors) {
         for (Vec4& c : colors)
           if (!material) c.w = 1;
@@ -241,11 +239,10 @@ class GltfReader {
     return all;
   }
 
-  /// The vertices of a mesh depend on these besides its primitive, so nodes that differ in them
-  /// cannot share it.
+  /// Nodes that differ in these cannot share the mesh of a primitive.
   struct Cause {
     std::int32_t skin = Rig::kNone;
-    std::int32_t weights = Rig::kNone;  ///< a node that has its own
+    std::int32_t weights = Rig::kNone;  ///< a node with its own
     friend auto operator<=>(const Cause&, const Cause&) = default;
   };
 
@@ -261,8 +258,7 @@ class GltfReader {
     for (std::uint32_t i = 0; i < count; ++i) place(index, node, first + i);
   }
 
-  /// Instances share the mesh of a primitive, unless each is deformed by itself. They stand at node
-  /// `at` of the rig.
+  /// Places instances at node `at` of the rig. They share the mesh of a primitive, unless deformed.
   void place(std::size_t index, const Json& node, std::size_t at) {
     for (const Drawn& d : drawn(node["mesh"].count())) {
       buffers_.budget().take(sizeof(Instance));
@@ -325,7 +321,7 @@ class GltfReader {
     rig_.deformed.push_back({mesh, static_cast<std::uint32_t>(d.shape), cause.skin, node});
   }
 
-  /// Nodes whose weights are their own, not those of their mesh.
+  /// Finds nodes with weights of their own instead of their mesh's.
   void find_weights() {
     has_weights_.resize(rig_.nodes.size());
     for (std::size_t i = 0; i < rig_.nodes.size(); ++i)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Buffers, URIs and accessors of glTF. Everything was checked against the document
-// (gltf_check.cpp); what is checked here is that a file or chunk holds what the document says.
+// Buffers, URIs and accessors of glTF. gltf_check.cpp has checked the document; here files and
+// chunks are checked against it.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -122,7 +122,7 @@ std::optional<Bytes> Buffers::buffer(std::size_t index) {
   return bytes;
 }
 
-/// Whether the buffer is one that only stands for what is packed elsewhere.
+/// Whether the buffer only stands for data packed elsewhere.
 bool Buffers::leaves_out(std::size_t buffer) const {
   const Json b = document_["buffers"].at(buffer);
   const auto extension = b.extension(kMeshopt);
@@ -154,7 +154,7 @@ bool Buffers::has_bytes(const Json& accessor) {
   return accessor.get("sparse") || (v && view(v->count()));
 }
 
-/// `convert(from, to)` makes one element, of `components` values, of its bytes.
+/// `convert(from, to)` makes one element of `components` values from its bytes.
 template <class T, class Convert>
 std::vector<T> Buffers::elements(const Json& accessor, std::optional<Bytes> packed,
                                  Convert convert) {
@@ -163,7 +163,7 @@ std::vector<T> Buffers::elements(const Json& accessor, std::optional<Bytes> pack
   std::optional<Bytes> bytes = packed;
   std::size_t stride = type.element_bytes, offset = 0;
   if (packed) {
-    // As many as elements, one behind the other.
+    // Packed elements have no gaps.
   } else if (const auto v = accessor.get("bufferView")) {
     bytes = view(v->count());
     offset = accessor.count("byteOffset", 0);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The checks that the rest of the glTF reader relies on: every index exists, every view lies in its
-// buffer and every accessor in its view, numbers have the range that the specification gives them.
-// (glTF 2.0, sections 3.5 to 3.11 and 5.) Arithmetic on offsets stays below 2⁵⁵: counts are at most
-// 2⁵³ (Json::count) and are divided, not multiplied.
+// The checks that the rest of the glTF reader relies on (glTF 2.0, sections 3.5 to 3.11 and 5):
+// every index exists, views lie in their buffers, accessors in their views, numbers in their
+// specified ranges. Offsets stay below 2⁵⁵: counts are at most 2⁵³ (Json::count) and are divided,
+// not multiplied.
 #include <algorithm>
 #include <set>
 #include <string>
@@ -35,7 +35,7 @@ void unique_indices(const Json& array, std::size_t limit) {
   });
 }
 
-/// `count` elements of `element` bytes, `stride` apart, from `offset`, within `size` bytes.
+/// Whether `count` elements of `element` bytes, `stride` apart from `offset` on, fit into `size`.
 bool fits(std::size_t count, std::size_t element, std::size_t stride, std::size_t offset,
           std::size_t size) {
   if (count == 0) return offset <= size;
@@ -205,8 +205,7 @@ void check_meshes(const Json& document, const Counts& n) {
   });
 }
 
-/// Every node has at most one parent; so there is a loop if some cannot be reached from the nodes
-/// that have none.
+/// A node has at most one parent, so there is a loop if some cannot be reached from those without.
 void check_loops(const Json& document, const std::vector<bool>& has_parent) {
   std::vector<std::size_t> stack;
   for (std::size_t i = 0; i < has_parent.size(); ++i)
@@ -224,7 +223,7 @@ void check_nodes(const Json& document, const Counts& n) {
   document.for_each("cameras", [](const Json& c) {
     const std::string type = c["type"].string();
     const bool perspective = type == "perspective";
-    if (!perspective && type != "orthographic") return;  // a kind that is not known is not drawn
+    if (!perspective && type != "orthographic") return;  // unknown kinds are not drawn
     const Json lens = c[type.c_str()];
     for (const char* key : {perspective ? "yfov" : "xmag", perspective ? "znear" : "ymag"})
       (void)lens[key].real();
@@ -315,7 +314,7 @@ void check_asset(const Json& document) {
   }
 }
 
-/// Extensions whose effect on the picture is implemented, or that have none on a still picture.
+/// Extensions that are implemented, or have no effect on a still picture.
 constexpr std::string_view kKnown[] = {
     kMeshopt,
     kInstancing,

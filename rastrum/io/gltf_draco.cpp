@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// KHR_draco_mesh_compression: primitives that Draco has packed. Without the library at build time
-// they are refused with what to install. The sizes that a stream states are compared with the
-// document first, because the library trusts them.
+// KHR_draco_mesh_compression: primitives packed by Draco. Without the library they are refused with
+// what to install. A stream's sizes are compared with the document first, because the library
+// trusts them.
 #include <algorithm>
 #include <cstddef>
 #include <string>
@@ -30,7 +30,7 @@ class Beginning {
     }
     return std::to_integer<std::size_t>(bytes_[at_++]);
   }
-  /// Seven bits a byte, the lowest first.
+  /// Seven bits per byte, the lowest first.
   std::size_t number() {
     std::size_t r = 0;
     for (unsigned shift = 0; shift < 35; shift += 7) {
@@ -45,7 +45,7 @@ class Beginning {
     is_cut_ |= bytes > bytes_.size() - at_;
     at_ += std::min(bytes, bytes_.size() - at_);
   }
-  /// One tree of metadata: entries with names, then as many branches, each with a name before it.
+  /// A tree of metadata: entries with names, then as many branches, each after its name.
   void skip_metadata() {
     for (std::size_t branches = 1; branches != 0 && !is_cut_; --branches) {
       for (std::size_t entries = number(); entries != 0 && !is_cut_; --entries) {
@@ -66,10 +66,10 @@ class Beginning {
   bool is_cut_ = false;
 };
 
-/// A stream may be this much smaller than what it holds, in vertices or faces a byte.
+/// A stream has at most this many vertices or faces per byte, unless they are few.
 constexpr std::size_t kMostPerByte = 1024, kFewVertices = std::size_t{1} << 16;
 
-/// Throws where the stream says that it holds something else than the document does.
+/// Throws if the stream's sizes contradict the document.
 void check_sizes(const Json& extension, Bytes packed, std::size_t vertices, std::size_t faces) {
   Beginning b(packed);
   b.skip(5);
@@ -89,7 +89,7 @@ void check_sizes(const Json& extension, Bytes packed, std::size_t vertices, std:
     }
     b.skip_metadata();
   }
-  // Sequential: faces, points; edgebreaker: its kind, vertices before seams are cut, faces.
+  // Sequential: faces, points. Edgebreaker: its kind, vertices before seams are cut, faces.
   const bool sequential = method == 0;
   if (!sequential) static_cast<void>(b.byte());
   const std::size_t first = b.number(), second = b.number();
@@ -106,7 +106,7 @@ void check_sizes(const Json& extension, Bytes packed, std::size_t vertices, std:
                    " bytes");
 }
 
-/// A vertex after the other, packed, in the type of the accessor.
+/// The values of all vertices, without gaps, in the type of the accessor.
 template <class T>
 std::vector<std::byte> values_as(const draco::PointAttribute& attribute, std::size_t vertices,
                                  std::size_t components) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A place in a glTF file's JSON, with checked access: every error names the file and the place
-// ("meshes[2].primitives[0].mode"). The JSON itself is parsed by nlohmann::json, without recursion.
+// A place in a glTF file's JSON, with checked access. Errors name the file and the place
+// ("meshes[2].primitives[0].mode"). nlohmann::json parses, without recursion.
 #pragma once
 
 #include <cmath>
@@ -17,7 +17,7 @@
 
 namespace rastrum::io::gltf {
 
-/// Borrows the document and the file's name; copies are cheap but for the path.
+/// Borrows the document and the file's name. A copy copies the path.
 class Json {
  public:
   Json(const nlohmann::json& value, const std::string& file, std::string path = {})
@@ -30,7 +30,6 @@ class Json {
     throw Error(code, *file_ + ": " + (path_.empty() ? "the document" : path_) + ": " + what);
   }
 
-  /// A member of this object, if it has it.
   [[nodiscard]] std::optional<Json> get(const char* key) const {
     if (!value_->is_object()) fail("must be an object");
     const auto it = value_->find(key);
@@ -43,7 +42,6 @@ class Json {
     return *std::move(member);
   }
 
-  /// Elements of this array.
   [[nodiscard]] std::size_t size() const {
     if (!value_->is_array()) fail("must be an array");
     return value_->size();
@@ -55,12 +53,12 @@ class Json {
   void for_each(F&& f) const {
     for (std::size_t i = 0, n = size(); i < n; ++i) f(at(i));
   }
-  /// The same for the array `key` of this object, if it has one.
+  /// For the array `key` of this object, if it has one.
   template <class F>
   void for_each(const char* key, F&& f) const {
     if (const auto array = get(key)) array->for_each(f);
   }
-  /// Members of this object: f(name, value).
+  /// Calls f(name, value) for the members of this object.
   template <class F>
   void for_each_member(F&& f) const {
     if (!value_->is_object()) fail("must be an object");
@@ -117,7 +115,7 @@ class Json {
     const auto member = get(key);
     return member ? member->string() : std::string(otherwise);
   }
-  /// `n` numbers, if the member exists.
+  /// Reads exactly N numbers, if the member exists.
   template <std::size_t N>
   bool numbers(const char* key, double (&to)[N]) const {
     const auto member = get(key);
@@ -126,7 +124,6 @@ class Json {
     for (std::size_t i = 0; i < N; ++i) to[i] = member->at(i).number();
     return true;
   }
-  /// An extension's object, if this object has it.
   [[nodiscard]] std::optional<Json> extension(const char* name) const {
     const auto all = get("extensions");
     return all ? all->get(name) : std::nullopt;
@@ -138,7 +135,7 @@ class Json {
   std::string path_;
 };
 
-/// How many elements the document's array `key` has; 0 without it.
+/// The length of the document's array `key`; 0 without it.
 [[nodiscard]] inline std::size_t length(const Json& document, const char* key) {
   const auto array = document.get(key);
   return array ? array->size() : 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// KHR_lights_punctual: lights of the document, which nodes place.
+// KHR_lights_punctual: the document's lights, which nodes place.
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -55,7 +55,7 @@ std::optional<Light> light_of(const Json& json) {
   Light light;
   const std::string& type = json["type"].string();
   light.color = color_of(json);
-  // Lux and candela are of what arrives; ours is what a white surface makes of it.
+  // Lux and candela measure arriving light; ours is what a white surface reflects.
   light.intensity = at_least_zero(json, "intensity", 1) * std::numbers::inv_pi_v<float>;
   if (type == "directional")
     light.kind = DirectionalLight{};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Materials, samplers, textures and images of glTF. A mesh carries only one set of texture
-// coordinates. So KHR_texture_transform is applied to them when the mesh is read, and a texture
-// that does not agree with the material's first one is left out, with a warning.
+// Materials, samplers, textures and images of glTF. A mesh has one set of texture coordinates, to
+// which KHR_texture_transform is applied when it is read. A texture that disagrees with the
+// material's first one is left out, with a warning.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -39,7 +39,6 @@ TextureUse use_of(const Json& info) {
   return use;
 }
 
-/// The properties of a texture beside its picture.
 auto sampler_of(const Texture& t) {
   return std::tuple(t.wrap_u, t.wrap_v, t.mag, t.min, t.mipmaps);
 }
@@ -50,13 +49,13 @@ Wrap wrap_of(std::size_t value) {
                           : Wrap::repeat;
 }
 
-/// The base colour and the share of metal of a surface with this diffuse and specular colour.
+/// Base colour and metallic factor for a diffuse and a specular colour.
 struct Metal {
   Vec3 base;
   float metallic;
 };
 
-/// By the Khronos group's conversion: the share of metal whose base colour reflects both.
+/// By the Khronos group's conversion: the metallic factor whose base colour reflects both.
 Metal metal_of(Vec3 diffuse, Vec3 specular) {
   constexpr float kDielectric = 0.04F;
   const auto brightness = [](Vec3 c) {
@@ -179,7 +178,7 @@ void Materials::convert_glossy(std::size_t index, const Json& extension, const T
   glossy_.push_back(g);
 }
 
-/// Pixel by pixel where there are pictures, because only both colours together tell what is metal.
+/// Per pixel if there are pictures: only both colours together tell what is metal.
 void Materials::finish(const Glossy& g) {
   Material& m = scene_.materials[g.material];
   const Vec3 diffuse{g.diffuse.x, g.diffuse.y, g.diffuse.z};

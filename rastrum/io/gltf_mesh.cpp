@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One glTF primitive as a mesh, points or lines: its accessors, its triangles (lists, strips,
-// fans).
+// A glTF primitive (list, strip or fan) as a mesh, points or lines.
 #include <cstring>
 #include <numeric>
 #include <string>
@@ -17,7 +16,7 @@ void apply(const TextureUse& use, std::vector<Vec2>& texcoords) {
     t = {m[0][0] * t.x + m[0][1] * t.y + m[0][2], m[1][0] * t.x + m[1][1] * t.y + m[1][2]};
 }
 
-/// Corners in drawing order to triangles; strips turn every second one.
+/// Triangles of a strip or fan. A strip turns every second one.
 std::vector<std::uint32_t> triangles_of(const std::vector<std::uint32_t>& corners, bool strip) {
   std::vector<std::uint32_t> r;
   if (corners.size() < 3) return r;
@@ -37,10 +36,10 @@ std::vector<std::uint32_t> in_order(std::size_t corners) {
   return r;
 }
 
-/// About the memory that Draco takes for these.
+/// Estimated bytes that Draco takes.
 constexpr std::uint64_t kDracoVertex = 64, kDracoCorner = 32;
 
-/// Whether the accessors hold unpacked what an extension has packed.
+/// Whether the accessors also hold unpacked what an extension has packed.
 bool is_whole(const Json& primitive, const Json& accessors) {
   bool whole = true;
   const auto add = [&](const Json& index) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// EXT_meshopt_compression: buffer views that meshoptimizer's codecs and filters have packed.
-// Without the library at build time they are refused with what to install.
+// EXT_meshopt_compression: buffer views packed by meshoptimizer. Without the library they are
+// refused with what to install.
 #include <cstddef>
 #include <string>
 
@@ -13,7 +13,7 @@
 namespace rastrum::io::gltf {
 namespace {
 
-/// No stream unpacks to more: the codec of attributes keeps at least a bit for each eight bytes.
+/// Most bytes from one: the codec of attributes keeps at least a bit for eight bytes.
 constexpr std::size_t kMostUnpacked = 64;
 
 }  // namespace

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Nodes, skins, morph targets and animations of glTF as a Rig (scene/rig.hpp). Indices were checked
-// with the document (gltf_check.cpp); what the accessors hold is checked here, of all skins and
-// animations, used or not.
+// Nodes, skins, morph targets and animations of glTF as a Rig (scene/rig.hpp). gltf_check.cpp has
+// checked indices; this file checks what accessors hold, used or not.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -37,7 +36,7 @@ Rig::Node read_node(const Json& node) {
   return r;
 }
 
-/// The morph targets of a node's mesh; all of its primitives have as many (checked).
+/// The morph targets of a node's mesh; all its primitives have as many (checked).
 std::size_t target_count(const Json& node, const Json& document) {
   const auto mesh = node.get("mesh");
   if (!mesh) return 0;
@@ -57,7 +56,7 @@ std::vector<float> finite_floats(const Json& accessor, Buffers& buffers) {
   return r;
 }
 
-/// One vertex attribute, spread over sets of four: JOINTS_0, JOINTS_1 …
+/// A vertex attribute, spread over sets of four: JOINTS_0, JOINTS_1 …
 struct Set {
   Json joints, weights;
 };
@@ -104,7 +103,6 @@ void read_joints(const Json& primitive, const PrimitiveData& data, Rig::Shape& s
   }
 }
 
-/// Displacements, as many as vertices.
 std::vector<Vec3> displacements(const Json& target, const char* key, const Json& document,
                                 const PrimitiveData& data) {
   const auto index = target.get(key);
@@ -112,12 +110,11 @@ std::vector<Vec3> displacements(const Json& target, const char* key, const Json&
   return data.read<Vec3>(document["accessors"].at(index->count()));
 }
 
-/// Keys of a sampler; accessors that several samplers share are read once.
+/// The keys of samplers. A shared accessor is read once.
 class Keys {
  public:
   Keys(const Json& document, Buffers& buffers) : document_(document), buffers_(buffers) {}
 
-  /// The number of keys.
   std::size_t check_times(const Json& index) const {
     const Json accessor = accessor_of(index);
     const AccessorType type = accessor_type(accessor);
@@ -125,7 +122,7 @@ class Keys {
       accessor.fail("is read as times, but is not SCALAR of floats");
     return accessor["count"].count();
   }
-  /// `each` elements of `components` a key.
+  /// Checks for `each` elements of `components` per key.
   void check_values(const Json& index, std::size_t keys, std::size_t each,
                     std::size_t components) const {
     const Json accessor = accessor_of(index);
@@ -139,7 +136,7 @@ class Keys {
       accessor.fail("has " + std::to_string(count) + " elements, but there are " +
                     std::to_string(keys) + " keys of " + std::to_string(each));
   }
-  /// Null where the document leaves the times to an application.
+  /// Null if the document leaves the times to an application.
   Rig::Floats times(const Json& index) {
     const Json accessor = accessor_of(index);
     if (!buffers_.has_bytes(accessor)) return nullptr;
@@ -185,7 +182,7 @@ std::optional<Rig::Path> path_of(const Json& target) {
   return std::nullopt;
 }
 
-/// nullopt, with a warning, for what an extension moves.
+/// None, with a warning, unless the channel moves a property of a node.
 std::optional<Rig::Track> read_track(const Json& channel, const Json& animation,
                                      const Json& document, Keys& keys,
                                      std::vector<std::string>& warnings) {

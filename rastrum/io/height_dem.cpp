@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // USGS DEM ("Standards for Digital Elevation Models", part 2, appendix 2-A), the ASCII format: an A
-// record with units and resolution, then a B record for each profile, which runs from south to
-// north, all in blocks of 1,024 bytes (1,020 used by a B record after the first). A reader of our
-// own: GDAL reads the format too, but it is large, and this file is the whole of what a terrain
-// needs, so that a DEM is drawn on every machine.
+// record with units and resolution, then a B record for each profile, from south to north, in
+// blocks of 1,024 bytes (B records use 1,020). GDAL reads it, too, but is large; this reader serves
+// every machine.
 //
-// The profiles of a map in UTM begin and end at different northings, because its sides are not
-// parallel to the grid: cells that no profile reaches are voids, and so are the format's own two
-// values for them. C records (statistics of accuracy) are not read.
+// Profiles of a UTM map begin and end at different northings, because its sides are not parallel to
+// the grid. Cells that no profile reaches are voids, and so are the format's two values for them. C
+// records (accuracy) are not read.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -27,7 +26,7 @@ constexpr double kMetresPerFoot = 0.3048;
 
 struct Profile {
   double x = 0, y = 0, datum = 0;  ///< ground units, ground units, units of elevation
-  std::size_t block = 0;           ///< its first
+  std::size_t block = 0;           ///< where it begins
   std::size_t count = 0;
 };
 
@@ -72,7 +71,7 @@ class DemReader {
     throw Error(Errc::bad_format, name_ + ": record " + std::to_string(block + 1) + ", byte " +
                                       std::to_string(column + 1) + ": " + what);
   }
-  /// The text of a field, without blanks.
+  /// The text of a field, trimmed.
   [[nodiscard]] std::string_view field(std::size_t block, std::size_t column, std::size_t width,
                                        const char* what) const {
     const std::size_t at = block * (kBlock + line_end_) + column;
@@ -92,7 +91,7 @@ class DemReader {
       fail(block, column, std::string(what) + " is no whole number: " + quoted(s));
     return value;
   }
-  /// Fortran's real numbers, whose exponent may be written with a D.
+  /// The exponent of Fortran's real numbers may begin with a D.
   [[nodiscard]] double real(std::size_t block, std::size_t column, std::size_t width,
                             const char* what) const {
     std::string s(field(block, column, width, what));
@@ -128,7 +127,6 @@ class DemReader {
       block += 1 + (p.count > kFirst ? (p.count - kFirst + kLater - 1) / kLater : 0);
     }
   }
-  /// Where the k-th elevation of a profile stands.
   static std::pair<std::size_t, std::size_t> place(const Profile& p, std::size_t k) {
     const std::size_t at = kProfileHeader + k * kElevation;
     return {p.block + at / kBlockUsed, at % kBlockUsed};
@@ -148,7 +146,7 @@ class DemReader {
       throw Error(Errc::bad_format, name_ +
                                         ": its profiles lie farther apart than 32768 steps of its "
                                         "resolution");
-    // A damaged coordinate must not ask for a huge map: sound ones are filled for the most part.
+    // A damaged coordinate must not ask for a huge map; sound ones are mostly filled.
     if (width * height > 64.0 * static_cast<double>(text_.size()))
       throw Error(Errc::bad_format, name_ + ": its profiles are strewn over a map of " +
                                         std::to_string(static_cast<int>(width)) + "x" +

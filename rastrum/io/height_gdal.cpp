@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// GeoTIFF through GDAL: the first band in its units, with its scale and offset, north up. Cells
-// with its value for "no data", outside its mask or with an alpha of 0 are voids. The library is
-// loaded when the first such file is read: linked, its hundred libraries would add 50 ms to every
-// start of the program (3 ms without). Where it was absent at build time the function says what to
-// install.
+// GeoTIFF through GDAL: the first band in its units, with its scale and offset, north up. Cells of
+// the value "no data", outside the mask or with alpha 0 are voids. The library is loaded when first
+// used: linked, its hundred libraries would add 50 ms to every start of the program (3 ms without).
+// Without it an error says what to install.
 #include <rastrum/io/parse.hpp>
 
 #ifdef RASTRUM_GDAL_LIBRARY
@@ -25,7 +24,6 @@ namespace rastrum::io {
 #ifdef RASTRUM_GDAL_LIBRARY
 namespace {
 
-/// The functions that are used of it, found once.
 class Gdal {
  public:
   static const Gdal& get(const std::string& name) {
@@ -34,7 +32,6 @@ class Gdal {
   }
 
  private:
-  /// A function of whatever type.
   struct Symbol {
     void* address;
     template <class F>
@@ -87,7 +84,7 @@ class Gdal {
   decltype(CPLGetLastErrorMsg)* last_error = find("CPLGetLastErrorMsg");
 };
 
-/// GDAL would print on stderr; what it says goes into our error instead.
+/// Keeps GDAL's messages from stderr. They go into our errors.
 class Quiet {
  public:
   explicit Quiet(const Gdal& gdal) : gdal_(gdal) { gdal.push_handler(gdal.quiet_handler); }
@@ -99,13 +96,12 @@ class Quiet {
   const Gdal& gdal_;
 };
 
-/// Whether the first row is the southernmost.
 bool is_south_up(const Gdal& gdal, GDALDatasetH data) {
   double t[6];
   return gdal.geo_transform(data, t) == CE_None && t[5] > 0;
 }
 
-/// Metres along a row of pixels; none where the file does not say.
+/// Metres along a row of pixels; none if the file does not say.
 std::optional<double> cell_metres(const Gdal& gdal, GDALDatasetH data) {
   double t[6];
   if (gdal.geo_transform(data, t) != CE_None) return std::nullopt;
@@ -151,7 +147,7 @@ HeightGrid read_height_gdal(const std::filesystem::path& file, const ReadOptions
   const double no_data = gdal.no_data(band, &has_void);
   if (has_void != 0)
     for (float& h : grid.heights.pixels())
-      // As GDAL does, which holds it in float64 and the heights in float32.
+      // GDAL compares so: this value is float64, the heights are float32.
       if (std::abs(static_cast<double>(h) - no_data) <= std::abs(no_data) * 1e-7)
         h = std::numeric_limits<float>::quiet_NaN();
   if ((gdal.mask_flags(band) & (GMF_ALL_VALID | GMF_NODATA)) == 0) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The doors of height maps, and the format that is nothing but its values.
+// The entry points for height maps, and the raw format.
 #include <rastrum/io.hpp>
 
 #include <cmath>
@@ -52,7 +52,7 @@ bool ends_at_edge(PathView file) {
 
 namespace {
 
-/// Returns f(); what `name` is stands in the error of memory that is not there.
+/// Returns f(). If memory runs out, the error names `name`.
 template <class F>
 HeightGrid read_in_memory(const std::string& name, const F& f) {
   try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Heights of an NPY file of two dimensions, of any type and order.
+// Heights of a two-dimensional NPY file, of any type and order.
 #include <string_view>
 #include <type_traits>
 
@@ -13,7 +13,6 @@
 namespace rastrum::io {
 namespace {
 
-/// Numbers of type T.
 template <class T>
 HeightGrid heights_of(const NpyHeader& header, std::span<const std::byte> bytes,
                       const std::string& name) {

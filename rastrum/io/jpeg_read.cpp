@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// JPEG through libjpeg-turbo, to RGBA8 with alpha 255. As in png_read.cpp, the function that calls
-// the library holds no object with a destructor, because the library leaves by longjmp. A file that
-// ends too early is an error here (the library would grey the rest).
+// JPEG through libjpeg-turbo, to RGBA8 with alpha 255. The function that calls the library holds no
+// object with a destructor, because the library leaves by longjmp. A file that ends too early is an
+// error (the library would fill it with grey).
 #include <cstddef>
 #include <cstdio>
 // jpeglib.h needs what <cstdio> declares before it.

@@ -51,7 +51,7 @@ bool LargeFile::lie_far(std::size_t first, std::size_t stride, std::uint64_t cou
 }
 
 void LargeFile::fail(const std::string& message) const {
-  check_length();  // zeros in the place of what was there are wrong, too
+  check_length();  // lost pages read as zeros, which are wrong, too
   throw Error(Errc::bad_format, shortened(std::string(name_).append(": ").append(message)));
 }
 
@@ -65,7 +65,7 @@ void LargeFile::walk(parallel::Threads& threads, std::size_t n,
                      const std::function<std::pair<std::size_t, std::size_t>(std::size_t)>& place,
                      const std::function<void(std::size_t)>& work,
                      const std::function<void(std::size_t, std::size_t)>& behind) const {
-  // Half of a window: the next half is asked for while threads are in this one.
+  // Half of a window: the next half is requested while threads work on this one.
   constexpr std::size_t kHalf = WalkWindow::kWindow / 2;
   using Place = std::pair<std::size_t, std::size_t>;
   struct Part {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Mesh files that are not read but mapped: their triangles come in runs, in place where they lie as
-// the renderer has them, and a selection of them becomes a small file of the same kind, which the
-// ordinary reader reads. docs/large_files.md says what it is for.
+// Mesh files that are mapped, not read. Triangles come in runs, in place where they lie as the
+// renderer has them. A selection becomes a small file of the same kind for the ordinary reader
+// (docs/large_files.md).
 #pragma once
 
 #include <algorithm>
@@ -34,8 +34,8 @@ class Threads;
 
 namespace rastrum::io {
 
-/// A run of a file's triangles as a mesh: indices into positions, or, where there are none,
-/// positions in order. It keeps what had to be copied from run to run.
+/// A run of a file's triangles: indices into positions or, without them, positions in order. Copies
+/// keep their memory from run to run.
 struct FileChunk {
   std::uint64_t first = 0;
   std::size_t count = 0;
@@ -45,27 +45,27 @@ struct FileChunk {
   std::vector<std::uint32_t> copied_indices{};
   std::vector<Vec3> copied_positions{};
   std::vector<Vec3d> copied_wide_positions{};
-  /// The bytes of the file that `positions` lie in; none where they were copied.
+  /// The file's bytes that hold `positions`; none if they were copied.
   std::size_t mapped_offset = 0, mapped_bytes = 0;
 };
 
-/// Triangles of a file, one after the other, that are one instance of its scene: a mesh at a node.
+/// Consecutive triangles that are one instance of the scene: a mesh at a node.
 struct FilePart {
   std::uint64_t first = 0, count = 0;
 };
 
-/// A small file of some triangles of a large one. It has all parts.
+/// A small file of some triangles of a large one, with all its parts.
 struct FileSelection {
   struct Part {
     std::uint64_t id = 0;     ///< of its first triangle, in the scene of the small file
     std::uint64_t first = 0;  ///< in the large file
-    std::size_t mesh = 0;     ///< parts may have one in common
+    std::size_t mesh = 0;     ///< parts may share one
   };
   std::vector<std::byte> file{};
   std::vector<Part> parts{};
   std::vector<std::vector<std::uint64_t>> meshes{};  ///< triangles of each, from a part's first
 
-  /// Returns the number that a triangle of the small scene has in the large file.
+  /// The number in the large file of a triangle of the small scene.
   [[nodiscard]] std::uint64_t original(std::uint64_t id) const {
     const Part& part = part_of(id);
     return part.first + meshes[part.mesh][static_cast<std::size_t>(id - part.id)];
@@ -73,16 +73,14 @@ struct FileSelection {
   [[nodiscard]] const Part& part_of(std::uint64_t id) const {
     return *std::prev(std::ranges::upper_bound(parts, id, {}, &Part::id));
   }
-  /// The selection of a file of one part.
   [[nodiscard]] static FileSelection of_one(std::vector<std::byte> file,
                                             std::span<const std::uint64_t> triangles) {
     return {std::move(file), {{}}, {{triangles.begin(), triangles.end()}}};
   }
 };
 
-/// Where vertices lie.
 struct FileBox : Box3 {
-  bool finite = true;  ///< all of them; else it is of the others alone
+  bool finite = true;  ///< false: the box leaves out vertices that are not
   /// Rounded outwards, so that the point is inside.
   void add(Vec3d p) {
     const Vec3 near = float32_of(p);
@@ -111,7 +109,6 @@ struct FileBox : Box3 {
   }
 };
 
-/// The longest edge of triangles.
 class LongestEdge {
  public:
   void add(Vec3d a, Vec3d b, Vec3d c) {
@@ -119,9 +116,9 @@ class LongestEdge {
     add(b, c);
     add(c, a);
   }
-  /// Rounded up; of what is not finite anything.
+  /// Rounded up; any value if a vertex is not finite.
   [[nodiscard]] float length() const {
-    constexpr double kMore = 1 + 1e-6;  // than float64 and float32 take away
+    constexpr double kMore = 1 + 1e-6;  // covers the rounding of float64 and float32
     const double most = std::sqrt(most_) * kMore;
     return most < std::numeric_limits<float>::max() ? static_cast<float>(most)
                                                     : std::numeric_limits<float>::infinity();
@@ -137,10 +134,9 @@ class LongestEdge {
 
 class LargeFile {
  public:
-  /// Maps `file` and looks at its header. Throws as read_scene what is wrong with it, and
-  /// Error{unsupported} that says why it cannot be drawn so: text, big-endian numbers,
-  /// faces that are no triangles. Throws Error{out_of_memory} where
-  /// what stays in memory (bytes_beside) is more than `memory_limit`, before it is there.
+  /// Maps `file` and looks at its header. Throws as read_scene, and Error{unsupported} that says
+  /// why it cannot be drawn out of core: text, big-endian numbers, faces that are no triangles.
+  /// Throws Error{out_of_memory} if what stays in memory (bytes_beside) exceeds `memory_limit`.
   [[nodiscard]] static std::unique_ptr<LargeFile> open(const std::filesystem::path& file,
                                                        std::uint64_t memory_limit = kNoLimit);
   static constexpr std::uint64_t kNoLimit = std::numeric_limits<std::uint64_t>::max();
@@ -150,60 +146,55 @@ class LargeFile {
   /// The reader's name of the format (decode_scene).
   [[nodiscard]] const std::string& format() const { return extension_; }
   [[nodiscard]] std::uint64_t triangles() const { return triangles_; }
-  /// The instances of its scene, in their order; at least one.
+  /// In order; at least one.
   [[nodiscard]] const std::vector<FilePart>& parts() const { return parts_; }
   [[nodiscard]] std::uint64_t vertices() const { return vertices_; }
   [[nodiscard]] std::uint64_t bytes() const { return mapped_.bytes().size(); }
   [[nodiscard]] virtual bool has_normals() const = 0;
   [[nodiscard]] virtual bool has_materials() const { return false; }
-  /// Bytes that its mesh takes in memory, about.
+  /// About the bytes of its mesh in memory.
   [[nodiscard]] virtual std::uint64_t bytes_in_memory() const = 0;
-  /// Bytes that it takes in memory whatever is selected: for everything that the file says beside
-  /// its vertices and triangles, and for the same again while a selection is made and read.
+  /// Bytes in memory whatever is selected: all but vertices and triangles, twice while a selection
+  /// is made and read.
   [[nodiscard]] virtual std::uint64_t bytes_beside() const { return 0; }
-  /// Bytes that a triangle of a selection takes at most, in the small file and in memory together.
+  /// The most bytes of a selected triangle, in the small file and in memory.
   [[nodiscard]] virtual std::uint64_t bytes_a_triangle() const = 0;
 
-  /// Triangles [first, first + count), of one part. `most_bytes`: of vertices that may stay mapped
-  /// for it; where its indices reach farther, those in use are copied. Thread-safe for distinct
-  /// chunks. Throws Error{bad_format} that names a triangle whose index is out of range,
-  /// Error{unsupported} for a face that is no triangle, Error{io} where the file has become
-  /// shorter.
+  /// Reads triangles [first, first + count) of one part. `most_bytes`: of vertices that may stay
+  /// mapped; beyond that, those in use are copied. Thread-safe for distinct chunks. Throws
+  /// Error{bad_format} that names a triangle with an index out of range, Error{unsupported} for
+  /// another face than a triangle, Error{io} if the file has become shorter.
   virtual void read(std::uint64_t first, std::size_t count, std::size_t most_bytes,
                     FileChunk& chunk) const = 0;
-  /// Throws as MappedFile::check().
   void check_length() const { mapped_.check(); }
-  /// Takes what a chunk has mapped out of the process.
   void drop(const FileChunk& chunk) const { mapped_.drop(chunk.mapped_offset, chunk.mapped_bytes); }
 
-  /// A box about triangles [first, first + count) of one part, maybe larger than it need be; none
-  /// before read_positions has looked at all of them.
+  /// A box around triangles [first, first + count) of one part, maybe too large; none before
+  /// read_positions has seen all of them.
   [[nodiscard]] virtual std::optional<FileBox> box(std::uint64_t /*first*/,
                                                    std::uint64_t /*count*/) const {
     return {};
   }
 
-  /// No edge of triangles [first, first + count) of one part is longer, in object space; infinity:
-  /// it is not known.
+  /// An upper bound of the edges of triangles [first, first + count) of one part, in object space;
+  /// infinity: unknown.
   [[nodiscard]] virtual float longest_edge(std::uint64_t /*first*/, std::uint64_t /*count*/) const {
     return std::numeric_limits<float>::infinity();
   }
 
-  /// A file of these triangles, which rise, with all that the file says of them; of several parts
-  /// with some others, so that each has one. Where some colour of the whole file is translucent,
-  /// one of its own is, too.
+  /// A file of these triangles, which rise, with all their data. Each of several parts gets at
+  /// least one triangle. If a colour of the whole file is translucent, so is one here.
   [[nodiscard]] virtual FileSelection selection(std::span<const std::uint64_t> triangles) const = 0;
 
-  /// The positions that triangles use, in the order in which the reader has them, in runs. The
-  /// first call looks at all indices. Throws as read(), of what is wrong the first.
+  /// The runs of the positions that triangles use, in the reader's order. The first call looks at
+  /// all indices. Throws as read(), for the first fault.
   [[nodiscard]] virtual std::size_t position_runs(parallel::Threads& threads) const = 0;
   [[nodiscard]] virtual std::size_t part_of_run(std::size_t /*run*/) const { return 0; }
-  /// A box about a run; none before read_positions has read all runs.
+  /// A box around a run; none before read_positions has read all runs.
   [[nodiscard]] virtual std::optional<FileBox> run_box(std::size_t run) const = 0;
   using TakePositions = std::function<void(std::size_t i, std::span<const Vec3d>)>;
-  /// Calls f(i, positions) for these runs, which rise: those of runs[i] in their order by one
-  /// thread, in one call or several. At most WalkWindow::kWindow or so of the file stays mapped
-  /// for it.
+  /// Calls f(i, positions) for these runs, which rise: those of runs[i] in order on one thread, in
+  /// one call or several. About WalkWindow::kWindow of the file stays mapped meanwhile.
   void read_positions(parallel::Threads& threads, std::span<const std::size_t> runs,
                       const TakePositions& f) const;
 
@@ -211,8 +202,8 @@ class LargeFile {
   explicit LargeFile(const std::filesystem::path& file);
   [[nodiscard]] Bytes bytes_of_file() const { return mapped_.bytes(); }
   [[nodiscard]] const MappedFile& mapped() const { return mapped_; }
-  /// Whether so many positions in float64, so many bytes apart, stay so, as the reader asks it of
-  /// them rounded (wide_positions.hpp): mostly answered by the first ones.
+  /// Whether `count` float64 positions, `stride` bytes apart, stay float64 by the reader's rule
+  /// (wide_positions.hpp). The first ones mostly decide.
   [[nodiscard]] bool lie_far(std::size_t first, std::size_t stride, std::uint64_t count) const;
   [[noreturn]] void fail(const std::string& message) const;
   [[noreturn]] void refuse(const std::string& message) const;
@@ -222,13 +213,11 @@ class LargeFile {
   /// Calls f with pieces of a run's positions. Thread-safe.
   virtual void read_run(std::size_t run,
                         const std::function<void(std::span<const Vec3d>)>& f) const = 0;
-  /// Keeps the boxes of all runs, which read_positions has found.
   virtual void keep_boxes(std::vector<FileBox> boxes) const = 0;
 
   /// Calls work(i) for [0, n) on threads, so many at once that their places, which rise, fit into a
-  /// window of the file. The places are asked for before, and taken out of the process afterwards.
-  /// If some calls throw, the exception of the lowest i is thrown. After those calls,
-  /// behind(begin, end) is called with their range of i.
+  /// window of the file. Places are requested before and released afterwards; then behind(begin,
+  /// end) gets the range of i. If calls throw, the exception of the lowest i is thrown.
   void walk(parallel::Threads& threads, std::size_t n,
             const std::function<std::pair<std::size_t, std::size_t>(std::size_t)>& place,
             const std::function<void(std::size_t)>& work,
@@ -236,7 +225,7 @@ class LargeFile {
 
   std::string name_;
   std::uint64_t triangles_ = 0, vertices_ = 0;
-  std::vector<FilePart> parts_{};  ///< none: one of all triangles
+  std::vector<FilePart> parts_{};  ///< empty: one of all triangles
 
  private:
   std::string extension_;
@@ -249,7 +238,7 @@ class LargeFile {
 [[nodiscard]] std::unique_ptr<LargeFile> open_large_npy(const std::filesystem::path& file);
 [[nodiscard]] std::unique_ptr<LargeFile> open_large_stl(const std::filesystem::path& file);
 
-/// Drops pages behind a walk through a file, so that no more than kWindow of it stays mapped.
+/// Releases pages behind a walk through a file, so that at most kWindow stays mapped.
 class WalkWindow {
  public:
   static constexpr std::size_t kWindow = std::size_t{32} << 20;
@@ -257,7 +246,7 @@ class WalkWindow {
   ~WalkWindow() { leave(at_); }
   WalkWindow(const WalkWindow&) = delete;
   WalkWindow& operator=(const WalkWindow&) = delete;
-  /// The walk goes on at `offset`, which never falls.
+  /// `offset` never falls.
   void reach(std::size_t offset) {
     at_ = offset;
     if (offset - behind_ >= kWindow) leave(offset);
@@ -272,12 +261,12 @@ class WalkWindow {
   std::size_t behind_, at_ = 0;
 };
 
-/// Some of the numbers 0 to n, a bit each.
+/// A set of numbers from 0 to n, a bit each.
 class BitSet {
  public:
   explicit BitSet(std::uint64_t n) : words_((n + 511) / 512 * 8) {}
   void add(std::uint64_t i) { words_[i / 64] |= std::uint64_t{1} << i % 64; }
-  /// While other threads do so, too. Most are added more than once, which costs a read.
+  /// Thread-safe. Most are added more than once, which costs only a read.
   void add_shared(std::uint64_t i) {
     std::atomic_ref<std::uint64_t> word(words_[i / 64]);
     const std::uint64_t bit = std::uint64_t{1} << i % 64;
@@ -290,7 +279,7 @@ class BitSet {
   void for_each(const F& f) const {
     for_each_of(0, words_.size() * 64, f);
   }
-  /// The same for those from `begin` to `end`, multiples of 64.
+  /// Likewise from `begin` to `end`, multiples of 64.
   template <class F>
   void for_each_of(std::size_t begin, std::size_t end, const F& f) const {
     for (std::size_t w = begin / 64; w < std::min(end / 64, words_.size()); ++w)
@@ -303,11 +292,11 @@ class BitSet {
   std::vector<std::uint64_t> words_;
 };
 
-/// Some vertices, and the place of each among them: 4 bytes more for 512.
+/// A set of vertices with the place of each: 4 more bytes per 512.
 class VertexSet : public BitSet {
  public:
   explicit VertexSet(std::size_t n) : BitSet(n), places_(words_.size() / 8) {}
-  /// Between the last add and the first place. Returns how many there are.
+  /// Call it between the last add and the first place. Returns their number.
   std::size_t find_places();
   [[nodiscard]] std::uint32_t place(std::uint64_t v) const;
 

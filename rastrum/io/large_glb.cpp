@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// GLB out of core: meshes of lists of indexed triangles at the nodes of the scene, with their
-// materials and textures. A selection is a GLB with the same JSON, whose accessors of vertices and
-// indices are of what was selected: nodes that share a mesh share what any of them has.
+// GLB out of core: meshes of indexed triangle lists at the scene's nodes, with materials and
+// textures. A selection is a GLB with the same JSON, whose accessors of vertices and indices have
+// what was selected. Nodes that share a mesh share what any of them has.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -23,12 +23,12 @@ using nlohmann::json;
 
 constexpr std::size_t kFloat = 5126, kUint = 5125, kUshort = 5123;
 
-/// Arrays and objects within each other.
+/// The deepest nesting of arrays and objects.
 constexpr std::size_t kDeepest = 1000;
-/// How deep a JSON text nests and how much memory its document takes, known before one is made.
+/// How deep a JSON text nests and how much memory its document takes, before it is parsed.
 struct JsonCost {
   std::size_t depth = 0;
-  std::uint64_t bytes = 0;  ///< about, rather too many: nlohmann::json with glibc's allocator
+  std::uint64_t bytes = 0;  ///< rather too many; of nlohmann::json with glibc's allocator
 };
 JsonCost cost_of(std::string_view text) {
   constexpr std::uint64_t kValue = 16, kObject = 64, kMember = 96, kString = 48, kArray = 80;
@@ -187,7 +187,7 @@ class LargeGlb final : public LargeIndexed {
   struct Attribute {
     std::size_t accessor, offset, stride, bytes;
   };
-  /// A primitive whose place in the file is in meshes_, under the same index.
+  /// Its place in the file is in meshes_, under the same index.
   struct Primitive {
     std::size_t mesh, number;
     std::map<std::string, Attribute> attributes{};
@@ -198,8 +198,7 @@ class LargeGlb final : public LargeIndexed {
     }
   };
 
-  /// Lists for each mesh its triangles, rising, that some part has among `triangles`; at least its
-  /// first.
+  /// For each mesh its triangles, rising, that some part has among `triangles`; at least the first.
   [[nodiscard]] std::vector<std::vector<std::uint64_t>> of_meshes(
       std::span<const std::uint64_t> triangles) const {
     std::vector<std::vector<std::uint64_t>> all(meshes_.size());
@@ -245,10 +244,11 @@ class LargeGlb final : public LargeIndexed {
     if (!glb.bin) refuse("it has no binary chunk");
     bin_ = static_cast<std::size_t>(glb.bin->data() - bytes.data());
     bin_bytes_ = glb.bin->size();
-    // The parser does not recurse, but copies and texts of what it found do.
+    // The parser does not recurse, but copying and printing do.
     const JsonCost cost = cost_of(glb.text);
     if (cost.depth > kDeepest) fail("its JSON is nested too deep");
-    // The file's and a selection's or the reader's; texts of a selection, one of which grows.
+    // Two documents (the file's, and a selection's or the reader's) and a selection's texts, of
+    // which one grows.
     bytes_beside_ = 2 * cost.bytes + 3 * glb.text.size();
     const auto check_memory = [&](const char* what) {
       if (bytes_beside_ > memory_limit)
@@ -261,7 +261,7 @@ class LargeGlb final : public LargeIndexed {
     json_ = json::parse(glb.text, nullptr, false);
     if (json_.is_discarded()) fail("its JSON cannot be read");
     mapped().drop(kGlbHeader + kGlbChunk, glb.text.size());
-    constexpr std::uint64_t kNode = 512;  // the reader's, and where it stands
+    constexpr std::uint64_t kNode = 512;  // bytes: the reader's node and its place
     if (const auto nodes = json_.find("nodes"); nodes != json_.end())
       bytes_beside_ += kNode * nodes->size();
     check_memory("its nodes and JSON take");
@@ -298,7 +298,7 @@ class LargeGlb final : public LargeIndexed {
       if (image.contains("bufferView")) (void)view(whole_of(image, "bufferView"));
   }
 
-  /// Leaves out a mesh that no node draws, as the reader does.
+  /// Checks a mesh that no node draws, as the reader does.
   void check_indices(const IndexedPlace& mesh) const {
     WalkWindow window(mapped(), mesh.first_face);
     std::vector<std::uint32_t> indices(3 * kAtOnce);
@@ -314,8 +314,8 @@ class LargeGlb final : public LargeIndexed {
     if (!ok) refuse(what);
   }
 
-  /// As the reader takes numbers (gltf_json.hpp): JSON may write them as 1.0 or 1e0, and what is
-  /// beyond 64 bits is a float64 to the parser.
+  /// As in gltf_json.hpp: JSON may write whole numbers as 1.0 or 1e0, and the parser makes those
+  /// beyond 64 bits float64.
   [[nodiscard]] std::size_t whole(const json& number, const char* what) const {
     if (number.is_number_unsigned()) return number.get<std::size_t>();
     const double x = number.is_number() ? number.get<double>() : -1;
@@ -414,7 +414,6 @@ class LargeGlb final : public LargeIndexed {
     return meshes;
   }
 
-  /// Where a view lies in the file.
   [[nodiscard]] std::pair<std::size_t, std::size_t> view(std::size_t number) const {
     const json& v = json_.at("bufferViews").at(number);
     if (v.contains("extensions")) refuse("its buffers are packed");

@@ -54,7 +54,7 @@ void LargeIndexed::read(std::uint64_t first, std::size_t count, std::size_t most
                         .stride_bytes = static_cast<std::ptrdiff_t>(mesh.vertex_bytes)});
 }
 
-/// As the reader has it.
+/// As the reader rounds it.
 Vec3d LargeIndexed::position_at(const IndexedPlace& mesh, std::uint64_t v) const {
   const std::byte* const at = bytes_of_file().data() + mesh.vertex_at(v) + mesh.position;
   Vec3 p;
@@ -67,7 +67,7 @@ Vec3d LargeIndexed::position_at(const IndexedPlace& mesh, std::uint64_t v) const
   return mesh.far ? wide : Vec3d(float32_of(wide));
 }
 
-/// Copies the vertices that a chunk uses, whose indices are the file's, and counts them anew.
+/// Copies the vertices that a chunk uses and renumbers its indices, which are the file's.
 template <class P>
 void LargeIndexed::gather(const IndexedPlace& mesh, std::uint32_t lowest, std::uint32_t highest,
                           FileChunk& chunk, std::vector<P>& to) const {
@@ -103,7 +103,7 @@ LargeIndexed::Look LargeIndexed::look_at(const IndexedPlace& mesh,
   const auto size = [&](std::size_t i) {
     return static_cast<std::size_t>(std::min<std::uint64_t>(kAtOnce, mesh.triangles - i * kAtOnce));
   };
-  // Vertices of a few rows of a grid; a mesh in no order would read all of them again and again.
+  // Vertices of a few rows of a grid. A mesh in no order would read all of them repeatedly.
   constexpr std::size_t kNear = std::size_t{1} << 20;
   const std::size_t near = kNear / mesh.vertex_bytes;
   walk(
@@ -155,8 +155,8 @@ std::size_t LargeIndexed::position_runs(parallel::Threads& threads) const {
       first_run_.push_back(first_run_.back() + runs_of(meshes_[mesh_of(part)]));
     looks_ = std::move(looks);
   }
-  // The boxes of a mesh at one node are found by who asks first; one at many would be read once a
-  // node for them. Asked anew where a stop came in between.
+  // The boxes of a mesh at one node are found by the first that asks. A mesh at several nodes would
+  // be read once per node for them, so its boxes are found here; again if a stop came in between.
   if (boxes_.empty()) {
     std::vector<std::size_t> of_parts = mesh_of_part_;
     std::ranges::sort(of_parts);
@@ -220,7 +220,7 @@ void LargeIndexed::read_in_mesh(std::size_t mesh_number, std::size_t run,
                                 const std::function<void(std::span<const Vec3d>)>& f) const {
   const IndexedPlace& mesh = meshes_[mesh_number];
   const std::size_t first = run * kAtOnce;
-  constexpr std::size_t kSome = 512;  // fits into the first cache
+  constexpr std::size_t kSome = 512;  // fits into the first-level cache
   Vec3d some[kSome];
   std::size_t n = 0;
   looks_[mesh_number].used.for_each_of(first, first + kAtOnce, [&](std::size_t v) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Large files of vertices of one size and triangles of indices of one size: what they have in
-// common, wherever these lie.
+// The common part of large files with vertices and indexed triangles of one size each.
 #pragma once
 
 #include <algorithm>
@@ -16,15 +15,14 @@
 
 namespace rastrum::io {
 
-/// A mesh in a file.
 struct IndexedPlace {
   std::uint64_t triangles = 0, vertices = 0;
   std::size_t first_vertex = 0, vertex_bytes = 0;
   std::size_t position = 0;  ///< in a vertex: three numbers
   bool wide = false;         ///< float64
-  bool far = false;          ///< and stay so, as the reader has it; else they are rounded
+  bool far = false;          ///< and stays so, by the reader's rule; else rounded
   std::size_t first_face = 0, face_bytes = 0;
-  std::string name{};  ///< before what is said of it; empty: the file's only one
+  std::string name{};  ///< before messages about it; empty: the file has one mesh
   /// Skipped faces before this triangle; `bytes` counts all skipped faces up to here.
   struct Gap {
     std::uint64_t triangle = 0;
@@ -39,7 +37,7 @@ struct IndexedPlace {
     const auto after = std::ranges::upper_bound(gaps, t, {}, &Gap::triangle);
     return first_face + t * face_bytes + (after == gaps.begin() ? 0 : std::prev(after)->bytes);
   }
-  /// How many of the `n` triangles from `t` on lie side by side.
+  /// How many of the `n` triangles from `t` on are contiguous.
   [[nodiscard]] std::size_t side_by_side(std::uint64_t t, std::size_t n) const {
     const auto after = std::ranges::upper_bound(gaps, t, {}, &Gap::triangle);
     return after == gaps.end() ? n : std::min<std::size_t>(n, after->triangle - t);
@@ -60,8 +58,8 @@ class LargeIndexed : public LargeFile {
   static constexpr std::size_t kAtOnce = 1 << 14;
 
   explicit LargeIndexed(const std::filesystem::path& file) : LargeFile(file) {}
-  /// The indices of triangles [first, first + n) of a mesh, and the range of them and those before.
-  /// Throws as read().
+  /// Copies the indices of triangles [first, first + n), and widens the range to hold them. Throws
+  /// as read().
   virtual void copy_indices(const IndexedPlace& mesh, std::uint64_t first, std::size_t n,
                             std::uint32_t* to, std::uint32_t& lowest,
                             std::uint32_t& highest) const = 0;
@@ -77,7 +75,7 @@ class LargeIndexed : public LargeFile {
   }
 
   std::vector<IndexedPlace> meshes_;
-  std::vector<std::size_t> mesh_of_part_{};  ///< none: the first of the only one
+  std::vector<std::size_t> mesh_of_part_{};  ///< empty: all are of the first mesh
 
  private:
   [[nodiscard]] Vec3d position_at(const IndexedPlace& mesh, std::uint64_t v) const;
@@ -88,7 +86,7 @@ class LargeIndexed : public LargeFile {
   void read_run(std::size_t run,
                 const std::function<void(std::span<const Vec3d>)>& f) const override;
   void keep_boxes(std::vector<FileBox> boxes) const override;
-  /// The run of a mesh's vertices that a run of positions is.
+  /// The run of a mesh's vertices for a run of positions.
   [[nodiscard]] std::size_t run_of_mesh(std::size_t run) const;
   void look_for_boxes(parallel::Threads& threads) const;
   [[nodiscard]] static std::size_t runs_of(const IndexedPlace& mesh) {
@@ -99,20 +97,18 @@ class LargeIndexed : public LargeFile {
   void read_in_mesh(std::size_t mesh_number, std::size_t run,
                     const std::function<void(std::span<const Vec3d>)>& f) const;
 
-  /// The lowest and the highest vertex of each kAtOnce triangles, and an upper bound of their
-  /// edges.
+  /// The lowest and highest vertex of kAtOnce triangles, and an upper bound of their edges.
   struct Range {
     std::uint32_t lowest = ~std::uint32_t{0}, highest = 0;
-    float longest_edge = 0;  ///< infinity: their vertices lie too far apart to look at
+    float longest_edge = 0;  ///< infinity: vertices too far apart to look at
     void add(const Range& r) {
       lowest = std::min(lowest, r.lowest);
       highest = std::max(highest, r.highest);
       longest_edge = std::max(longest_edge, r.longest_edge);
     }
   };
-  /// That of triangles [first, first + count) of one part, and of those beside them.
+  /// The range of triangles [first, first + count) of one part, and of some beside them.
   [[nodiscard]] Range range_of(std::size_t part, std::uint64_t first, std::uint64_t count) const;
-  /// Which vertices of a mesh are in use.
   struct Look {
     VertexSet used;
     std::vector<Range> ranges;
@@ -122,11 +118,11 @@ class LargeIndexed : public LargeFile {
   [[nodiscard]] Look look_at(const IndexedPlace& mesh, parallel::Threads& threads) const;
 
   mutable std::mutex looking_;
-  mutable std::vector<Look> looks_;             ///< of meshes; none before the first look
-  mutable std::vector<std::size_t> first_run_;  ///< of each part, of kAtOnce vertices each
+  mutable std::vector<Look> looks_;             ///< by mesh; empty before the first look
+  mutable std::vector<std::size_t> first_run_;  ///< by part, of kAtOnce vertices each
   /// The first run of each mesh, of kAtOnce vertices each: nodes share them.
   mutable std::vector<std::size_t> first_of_mesh_;
-  mutable std::vector<FileBox> boxes_;  ///< of those, of vertices in use; since all were read
+  mutable std::vector<FileBox> boxes_;  ///< per run, of vertices in use; empty until all were read
 };
 
 }  // namespace rastrum::io

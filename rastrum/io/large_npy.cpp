@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// NPY out of core: an array of triangles, (n, 3, 3) or (n, 9). It is drawn where it lies. A chunk
-// converts corners of float64 that is to be rounded (wide_positions.hpp).
+// NPY out of core: triangles, (n, 3, 3) or (n, 9), drawn in place. A chunk converts float64 corners
+// to be rounded (wide_positions.hpp).
 #include <string>
 
 #include <rastrum/io/large_soup.hpp>

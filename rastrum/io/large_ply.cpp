@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Binary PLY out of core. Vertices have one size, and faces are triangles, so places can be
-// computed; faces of fewer corners are skipped, and a list keeps their places. Positions are read
-// where they lie. A chunk copies its indices, because a face begins with its count, and counts them
-// from the lowest vertex that it uses, so that no vertices of other chunks are projected.
+// Binary PLY out of core. Vertices have one size and faces are triangles, so places can be
+// computed; a list keeps the places of faces of fewer corners, which are skipped. Positions are
+// read in place. A chunk copies its indices, because a face begins with its count, and counts them
+// from its lowest vertex, so that no other vertices are projected.
 #include <algorithm>
 #include <cstring>
 #include <limits>
@@ -55,7 +55,7 @@ class LargePly final : public LargeIndexed {
     return mesh().gaps.size() * sizeof(IndexedPlace::Gap);
   }
   [[nodiscard]] std::uint64_t bytes_a_triangle() const override {
-    // Properties of faces take at most 10 bytes each: colours 28 bytes for three channels or more.
+    // A property of a face takes at most 10 bytes: colours 28 bytes for three channels or more.
     return mesh().face_bytes + kFaceCorners + 10 * (header_.elements[1].properties.size() - 1) +
            3 * (mesh().vertex_bytes + vertex_in_memory());
   }
@@ -109,8 +109,6 @@ class LargePly final : public LargeIndexed {
   [[nodiscard]] IndexedPlace& mesh() { return meshes_[0]; }
   [[nodiscard]] const IndexedPlace& mesh() const { return meshes_[0]; }
 
-  // ---- the header
-
   void check_room(const Element& e, std::size_t at) const {
     ply::check_room(e, bytes_of_file().size() - at, false,
                     [&](const std::string& why) { fail(why); });
@@ -161,7 +159,7 @@ class LargePly final : public LargeIndexed {
     count_at_ = offset_of(e, list);
     corners_ = count_at_ + ply::size_of(p.count_type);
     mesh().face_bytes = e.least_bytes() + kFaceCorners;
-    // The size fits triangles alone. If that is wrong, reading the faces finds it.
+    // The size suggests triangles alone. If that is wrong, reading the faces finds it.
     const std::size_t left = bytes_of_file().size() - mesh().first_face;
     if (left % mesh().face_bytes == 0 && left / mesh().face_bytes == e.count) return;
     std::tie(mesh().gaps, mesh().triangles) = look_at_faces();
@@ -169,8 +167,8 @@ class LargePly final : public LargeIndexed {
     if (triangles_ == 0) refuse("it has no triangles");
   }
 
-  /// Looks at all faces. Faces of fewer than three corners are gaps. Throws the reader's error for
-  /// a bad face, or else refuses the first one of more than three corners.
+  /// Looks at all faces; those of fewer than three corners are gaps. Throws the reader's error for
+  /// a bad face, else refuses the first of more than three corners.
   [[nodiscard]] std::pair<std::vector<IndexedPlace::Gap>, std::uint64_t> look_at_faces() const {
     const Bytes bytes = bytes_of_file();
     const std::size_t behind = mesh().face_bytes - kFaceCorners - corners_;
@@ -212,7 +210,6 @@ class LargePly final : public LargeIndexed {
     return at;
   }
 
-  /// The header of a selection.
   [[nodiscard]] std::string header_text(std::size_t vertices, std::size_t faces) const {
     constexpr const char* kNames[] = {"char", "uchar", "short", "ushort",
                                       "int",  "uint",  "float", "double"};
@@ -223,7 +220,7 @@ class LargePly final : public LargeIndexed {
     text += " 1.0\n";
     for (const std::string& picture : header_.texture_files)
       text.append("comment TextureFile ").append(picture).append("\n");
-    // The reader decides this by all positions, but a selection has only some.
+    // The reader decides this by all positions; a selection has only some.
     if (mesh().wide)
       text.append("comment position_type ").append(type(mesh().far ? Type::f64 : Type::f32)) +=
           '\n';
@@ -247,8 +244,6 @@ class LargePly final : public LargeIndexed {
     }
     return text + "end_header\n";
   }
-
-  // ---- faces
 
   [[nodiscard]] std::int64_t corners_of(const std::byte* face) const {
     return static_cast<std::int64_t>(ply::number_at(face + count_at_, count_type_));
@@ -291,8 +286,7 @@ class LargePly final : public LargeIndexed {
       if (to[i] >= vertices_) refuse_index(mesh(), first + i / 3, to[i]);
   }
 
-  /// Calls f(corners) for the faces of these triangles. Checked: a selection may be of a file that
-  /// nobody has read whole.
+  /// Calls f(corners) for these faces. Checks them, because nobody may have read the whole file.
   template <class F>
   void each_face(std::span<const std::uint64_t> triangles, const F& f) const {
     WalkWindow window(mapped(), mesh().first_face);
@@ -308,9 +302,7 @@ class LargePly final : public LargeIndexed {
     }
   }
 
-  // ---- colours
-
-  /// Colours of vertices or faces, and what only all of them together decide.
+  /// Colours of vertices or faces, and what all of them together decide.
   struct Colors {
     const Element* element = nullptr;  ///< null: there are none
     ply::ColorPlaces places;
@@ -321,22 +313,20 @@ class LargePly final : public LargeIndexed {
     [[nodiscard]] bool has_alpha() const { return element != nullptr && places.channel[3] >= 0; }
   };
 
-  /// The place of the vertex or triangle that has the colour.
   [[nodiscard]] std::size_t place_of(const Colors& colors, std::uint64_t i) const {
     return colors.element == &header_.elements[0] ? mesh().vertex_at(i) : mesh().face_at(i);
   }
 
-  /// Channel `c` of a colour.
   [[nodiscard]] float channel(const Colors& colors, std::uint64_t i, int c) const {
     const auto k = static_cast<std::size_t>(colors.places.channel[c]);
-    // Properties behind the face's list lie three indices further.
+    // Properties after the face's list lie three indices further.
     std::size_t at = offset_of(*colors.element, k);
     if (colors.element != &header_.elements[0] && at > count_at_) at += kFaceCorners;
     return float32_of(ply::number_at(bytes_of_file().data() + place_of(colors, i) + at,
                                      colors.element->properties[k].type));
   }
 
-  /// Finds units and translucency by the reader's rules; reads all `count` colours if necessary.
+  /// Finds units and translucency by the reader's rules, if necessary from all `count` colours.
   [[nodiscard]] Colors look_at(const Element& e, std::uint64_t count) const {
     Colors colors{nullptr, ply::find_colors(e), count, {}, count};
     if (!colors.places.any()) return colors;
@@ -360,7 +350,7 @@ class LargePly final : public LargeIndexed {
     return colors;
   }
 
-  /// Calls f(i) for the colours in order until it returns false. Returns the number of that one.
+  /// Calls f(i) for the colours in order until it returns false. Returns that i.
   template <class F>
   std::uint64_t each_color(const Colors& colors, const F& f) const {
     WalkWindow window(mapped(), place_of(colors, 0));
@@ -370,7 +360,6 @@ class LargePly final : public LargeIndexed {
     return i;
   }
 
-  /// The colours of vertices, which are looked at once.
   [[nodiscard]] const Colors& vertex_colors() const {
     look();
     return vertex_colors_;
@@ -381,7 +370,7 @@ class LargePly final : public LargeIndexed {
     const std::scoped_lock lock(once_);
     if (looked_) return;
     const Colors face_colors = look_at(header_.elements[1], triangles_);
-    // A selection cannot add a translucent face, as it adds a vertex.
+    // A selection can add a translucent vertex, but no face.
     if (face_colors.translucent != triangles_) refuse("some colour of its faces is translucent");
     vertex_colors_ = look_at(header_.elements[0], vertices_);
     face_units_ = face_colors.units;

@@ -57,7 +57,7 @@ FileSelection LargeSoup::selection(std::span<const std::uint64_t> triangles) con
   check_length();
   std::vector<std::byte> small = header_of(triangles.size());
   std::size_t to = small.size();
-  // Float64 of some triangles would not tell the reader whether the whole file is rounded.
+  // Float64 of some triangles would not tell the reader that the whole file is rounded.
   const bool rounded = wide_ && !far_;
   const std::size_t each = rounded ? 3 * sizeof(Vec3) : triangle_bytes_;
   small.resize(to + triangles.size() * each);

@@ -17,13 +17,12 @@ class LargeSoup : public LargeFile {
   [[nodiscard]] std::uint64_t bytes_in_memory() const override {
     return triangles_ * (12 + vertex_in_memory() / 2);
   }
-  /// In the small file; 12 of indices, three vertices and three times the slots of the reader's
-  /// table of vertices.
+  /// The small file; 12 of indices; three vertices and three times the slots of the reader's table.
   [[nodiscard]] std::uint64_t bytes_a_triangle() const override {
     return triangle_bytes_ + 12 + 3 * (vertex_in_memory() + 16);
   }
 
-  /// Reads in place if nothing lies between the numbers and they need no rounding; else copies.
+  /// Reads in place if the numbers are contiguous and need no rounding; else copies.
   void read(std::uint64_t first, std::size_t count, std::size_t most_bytes,
             FileChunk& chunk) const override;
   [[nodiscard]] FileSelection selection(std::span<const std::uint64_t> triangles) const override;
@@ -34,11 +33,10 @@ class LargeSoup : public LargeFile {
 
  protected:
   explicit LargeSoup(const std::filesystem::path& file) : LargeFile(file) {}
-  /// The header of a file of so many triangles.
   [[nodiscard]] virtual std::vector<std::byte> header_of(std::size_t triangles) const = 0;
 
   std::size_t first_triangle_ = 0, triangle_bytes_ = 0;
-  std::size_t corners_ = 0;  ///< in a triangle
+  std::size_t corners_ = 0;  ///< their offset in a triangle
   bool wide_ = false;        ///< corners are float64
   bool far_ = false;         ///< and stay float64, by the reader's rule
 
@@ -48,7 +46,6 @@ class LargeSoup : public LargeFile {
   [[nodiscard]] std::size_t triangle_at(std::uint64_t t) const {
     return first_triangle_ + t * triangle_bytes_;
   }
-  /// The bytes of a vertex's positions in the reader's scene.
   [[nodiscard]] std::uint64_t vertex_in_memory() const { return far_ ? 12 + 24 : 12; }
   [[nodiscard]] bool is_in_place() const {
     return far_ || (!wide_ && triangle_bytes_ == 3 * sizeof(Vec3));
@@ -59,8 +56,8 @@ class LargeSoup : public LargeFile {
                 const std::function<void(std::span<const Vec3d>)>& f) const override;
   void keep_boxes(std::vector<FileBox> boxes) const override { boxes_ = std::move(boxes); }
 
-  mutable std::vector<float> longest_;  ///< edge, of as many; written while boxes are made
-  mutable std::vector<FileBox> boxes_;  ///< of kAtOnce triangles each, since all were looked at
+  mutable std::vector<float> longest_;  ///< edge per kAtOnce triangles; written with the boxes
+  mutable std::vector<FileBox> boxes_;  ///< of kAtOnce triangles each; empty until all were read
 };
 
 }  // namespace rastrum::io

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Binary STL out of core. A facet has its corners side by side, behind a normal that nobody reads;
-// a chunk copies them, 36 bytes of 50.
+// Binary STL out of core. A chunk copies a facet's corners, 36 bytes of 50. Its normal is not read.
 #include <algorithm>
 #include <cstring>
 #include <mutex>
@@ -26,7 +25,7 @@ class LargeStl final : public LargeSoup {
     corners_ = stl::kCorners;
   }
 
-  /// With colours, an index for each corner and a colour.
+  /// With colours, an index per corner and a colour.
   [[nodiscard]] std::uint64_t bytes_a_triangle() const override {
     return LargeSoup::bytes_a_triangle() + (has_colors() ? 16 + 16 : 0);
   }
@@ -38,7 +37,7 @@ class LargeStl final : public LargeSoup {
     const auto count = static_cast<std::uint32_t>(triangles);
     std::memcpy(header.data() + 80, &count, sizeof(count));
     if (has_colors()) {
-      // The facets of the selection alone might not show that attributes are colours.
+      // The selected facets alone might not show that attributes are colours.
       const StlColors colors(bytes_of_file().first(80));
       const std::string_view whole =
           colors.is_magics() ? as_text(bytes_of_file()).substr(0, 80) : std::string_view{};
@@ -50,7 +49,7 @@ class LargeStl final : public LargeSoup {
     }
     return header;
   }
-  /// Whether attributes of facets are colours; the first call may read all of them.
+  /// Whether attributes of facets are colours. The first call may read all of them.
   [[nodiscard]] bool has_colors() const {
     std::call_once(looked_, [&] {
       const StlColors colors(bytes_of_file().first(80));

@@ -11,7 +11,7 @@
 
 namespace rastrum::io {
 
-/// `begin` is 0 where nothing is watched, and set last.
+/// `begin` is 0 where nothing is watched, and is set last.
 struct LostPages::Watched {
   std::atomic<bool> taken{false}, lost{false};
   std::atomic<std::uintptr_t> begin{0}, end{0};
@@ -23,17 +23,17 @@ struct LostPagesHandler {
   static struct sigaction before;
   static std::uintptr_t page;
 
-  /// In a signal's handler: atomics without locks and one system call.
+  /// Runs in a signal handler: lock-free atomics and one system call.
   static void run(int number, siginfo_t* info, void* context) {
     const int error = errno;
     const auto at = reinterpret_cast<std::uintptr_t>(info->si_addr);
-    const bool is_fault = info->si_code > 0;  // else somebody has sent it, and there is no place
+    const bool is_fault = info->si_code > 0;  // else it was sent, and has no address
     for (LostPages::Watched& w : all) {
       const std::uintptr_t begin = w.begin.load(), end = w.end.load();
-      // Asked again: another file may have come into the place meanwhile.
+      // `begin` is read again: another mapping may have taken the place meanwhile.
       if (!is_fault || begin == 0 || at < begin || at >= end || w.begin.load() != begin) continue;
       w.lost.store(true);  // before anybody can read zeros
-      // All from here on: of a file that is shorter all of it is lost, and one call is enough.
+      // Maps zeros up to the end, because a shorter file has lost all from here on.
       const std::uintptr_t first = at / page * page;
       void* const zeros = ::mmap(reinterpret_cast<void*>(first), end - first, PROT_READ,
                                  MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED | MAP_NORESERVE, -1, 0);
@@ -48,7 +48,7 @@ struct LostPagesHandler {
       before.sa_handler(number);
     else if (is_fault || before.sa_handler == SIG_DFL) {
       std::signal(number, SIG_DFL);
-      ::raise(number);  // waits until this returns, and ends the process
+      ::raise(number);  // takes effect when this returns, and ends the process
     }
   }
 

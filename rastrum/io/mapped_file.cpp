@@ -69,7 +69,7 @@ bool was_read(const std::filesystem::path& file) {
 }
 
 MappedFile::MappedFile(const std::filesystem::path& file, Kind kind) : file_(file) {
-  // O_NONBLOCK: a pipe without a writer is opened at once, and refused below.
+  // O_NONBLOCK opens a pipe without a writer at once; it is refused below.
   const int wait = kind == Kind::regular ? O_NONBLOCK : 0;
   const Descriptor d{::open(file.c_str(), O_RDONLY | O_CLOEXEC | wait)};
   if (d.fd < 0) fail(file, errno);
@@ -136,7 +136,7 @@ void MappedFile::drop(std::size_t offset, std::size_t size) const {
   if (!mapped_ || offset >= size_) return;
   static const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
   const std::size_t begin = (offset + page - 1) / page * page;
-  // The last page of the file is as good as whole.
+  // The file's last page counts as whole.
   const std::size_t stop = offset + std::min(size, size_ - offset);
   const std::size_t end = stop == size_ ? stop : stop / page * page;
   if (begin < end) ::madvise(const_cast<std::byte*>(data_) + begin, end - begin, MADV_DONTNEED);
@@ -145,7 +145,7 @@ void MappedFile::drop(std::size_t offset, std::size_t size) const {
 MappedFile::~MappedFile() {
   if (!mapped_) return;
   mapped_.reset();  // before another file may be mapped there
-  // munmap takes a non-const pointer although it writes nothing.
+  // munmap takes a non-const pointer but writes nothing.
   ::munmap(const_cast<std::byte*>(data_), size_);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A file's bytes, mapped: readers work on the page cache and copy nothing but their results.
+// A file's bytes, mapped, so that readers copy only their results.
 #pragma once
 
 #include <algorithm>
@@ -17,9 +17,8 @@
 
 namespace rastrum::io {
 
-/// Owns the mapping. A file that is not regular (a pipe) is read into memory instead, or refused; a
-/// file that cannot be watched (LostPages) is copied into memory. Throws Error{not_found | io}
-/// naming the file.
+/// Owns the mapping. A file that is not regular (a pipe) is read into memory or refused; an
+/// unwatched one (LostPages) is copied. Throws Error{not_found | io} naming the file.
 class MappedFile {
  public:
   enum class Kind { any, regular };
@@ -30,14 +29,13 @@ class MappedFile {
 
   [[nodiscard]] std::span<const std::byte> bytes() const { return {data_, size_}; }
 
-  /// Throws Error{io} where the file has become shorter than when it was mapped, or could not be
-  /// read: bytes that were read since the last call may be zeros.
+  /// Throws Error{io} if the file has become shorter or could not be read. Bytes read since the
+  /// last call may then be zeros.
   void check() const;
 
   /// Asks the system to read [offset, offset + size) ahead; returns at once.
   void will_need(std::size_t offset, std::size_t size) const;
-  /// Takes whole pages within [offset, offset + size) out of the process; who reads them again has
-  /// them from the page cache, or from the disk.
+  /// Releases whole pages within [offset, offset + size); the page cache or disk has them.
   void drop(std::size_t offset, std::size_t size) const;
 
  private:
@@ -56,7 +54,7 @@ class MappedFile {
 
 inline constexpr bool kLittleEndian = std::endian::native == std::endian::little;
 
-/// A number at any address. `swap`: whether its byte order is not this machine's.
+/// A number at any address. `swap`: its byte order is not this machine's.
 template <class T>
 [[nodiscard]] T load(const std::byte* p, bool swap = false) {
   std::array<std::byte, sizeof(T)> b;

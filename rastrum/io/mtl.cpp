@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// MTL, the materials of OBJ files, onto the metallic-roughness material: Kd and map_Kd are the base
+// MTL, the materials of OBJ files, as metallic-roughness materials. Kd and map_Kd are the base
 // colour, d (or 1 − Tr) its alpha, map_d a cut-out mask, Ke and map_Ke emission. Ns becomes a
-// roughness, unless the extension for physically based materials gives it (Pr, and Pm, norm).
-// Ambient and specular colours and models of illumination, which most files have, are not drawn; a
-// warning names other keys. A statement that cannot be read is skipped, too, and a warning names
-// the first such line, because many files in use have one.
+// roughness, unless the physically based extension (Pr, Pm, norm) gives it. Ambient and specular
+// colours and illumination models, which most files have, are not drawn. A warning names other keys
+// and the first line that cannot be read, which many files have.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -30,10 +29,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The numbers of a picture that a map takes: its colours, or one channel, which becomes red.
+/// The part of its picture that a map takes: colours, or one channel, which becomes red.
 enum class Channel : std::uint8_t { colors, red, green, blue, alpha, luminance };
 
-/// The file and options of map_Kd and the like; without a name there is no map.
+/// The file and options of map_Kd and the like. Without a name there is no map.
 struct TextureMap {
   std::string name{};
   bool clamp = false;
@@ -42,7 +41,7 @@ struct TextureMap {
   std::optional<Channel> channel{};  ///< -imfchan
   TextureTransform transform{};      ///< -o and -s
 
-  /// Textures with the same key have the same pixels.
+  /// Textures of equal keys have the same pixels.
   [[nodiscard]] auto key(Channel which) const { return std::tuple(name, clamp, base, gain, which); }
 };
 
@@ -60,7 +59,7 @@ void take_channel(Image<Rgba8>& image, Channel channel) {
               : static_cast<std::uint8_t>((54 * p.r + 183 * p.g + 19 * p.b + 128) / 256);
 }
 
-/// Makes colours base + gain · number.
+/// Maps colour channels x to base + gain · x.
 void stretch(Image<Rgba8>& image, float base, float gain) {
   if (base == 0 && gain == 1) return;
   std::uint8_t to[256];
@@ -83,7 +82,6 @@ struct MtlMaterial {
   }
 };
 
-/// Textures of one .mtl file, each file read once.
 class TextureReader {
  public:
   TextureReader(const fs::path& file, Scene& scene, Reading& reading)
@@ -93,21 +91,20 @@ class TextureReader {
         reading_(reading),
         pictures_(reading.budget) {}
 
-  /// Reads the pictures of all materials, side by side.
   void read(const std::vector<MtlMaterial>& materials) {
     for (const MtlMaterial& m : materials)
       for (const TextureMap* const map : m.maps()) add(*map);
     pictures_.decode_all();
   }
 
-  /// Returns the texture of a map. Requires that read() was called with its material.
+  /// Requires read() with the map's material.
   std::int32_t operator()(const TextureMap& map, Channel channel = Channel::colors) {
     if (map.name.empty()) return kNoTexture;
     const auto [it, is_new] = known_.emplace(map.key(channel), kNoTexture);
     if (is_new) it->second = make(map, channel);
     return it->second;
   }
-  /// The channel of map_d: that of -imfchan, else the picture's alpha, if it has some.
+  /// The channel of map_d: that of -imfchan, else the picture's alpha, if it has one.
   [[nodiscard]] Channel alpha_channel(const TextureMap& map) const {
     if (map.channel) return *map.channel == Channel::red ? Channel::colors : *map.channel;
     const auto file = files_.find(map.name);
@@ -154,7 +151,7 @@ class TextureReader {
     });
   }
 
-  /// Libraries are often passed on with their pictures converted and their names not.
+  /// Libraries are often passed on with converted pictures but old names.
   fs::path find(const std::string& name) {
     const FoundFile found = find_beside(folder_, name);
     const fs::path& file = found.path;
@@ -191,7 +188,7 @@ Material convert(const MtlMaterial& m, TextureReader& texture) {
   Material r;
   r.double_sided = true;  // MTL knows no sides
   r.name = m.name;
-  // A map of diffuse colours without a factor is taken by 0.6, as by most who read MTL.
+  // A map of diffuse colours without a factor gets 0.6, as in most readers of MTL.
   const float factor = m.diffuse_map.name.empty() ? 0 : 0.6F;
   const Vec3 diffuse = m.diffuse.value_or(Vec3{factor, factor, factor});
   const float alpha = m.dissolve.value_or(1 - m.transparency.value_or(0));
@@ -206,13 +203,13 @@ Material convert(const MtlMaterial& m, TextureReader& texture) {
   r.base_color_texture = texture(m.diffuse_map);
   r.emissive_texture = texture(m.emission_map);
   const Channel alpha_channel = texture.alpha_channel(m.alpha_map);
-  // The base colour's picture already brings its alpha; it must not count twice.
+  // The base colour's picture already has this alpha, which must not count twice.
   const bool has_alpha = r.base_color_texture != kNoTexture && alpha_channel == Channel::alpha &&
                          m.alpha_map.name == m.diffuse_map.name;
   if (!has_alpha) r.alpha_texture = texture(m.alpha_map, alpha_channel);
   r.normal_texture = texture(m.normal_map);
   r.normal_scale = m.normal_map.multiplier;
-  // A map without its factor: the factor is 1.
+  // A map without its factor has the factor 1.
   if (r.emissive_texture != kNoTexture && r.emissive == Vec3{0, 0, 0}) r.emissive = {1, 1, 1};
   if (r.alpha_texture != kNoTexture || has_alpha)
     r.alpha_mode = AlphaMode::mask;
@@ -233,7 +230,7 @@ class MtlReader {
         scene_(scene),
         by_name_(by_name) {}
 
-  /// `transforms` gets one for each material of the scene.
+  /// `transforms` gets one per material of the scene.
   void read(std::vector<TextureTransform>& transforms) {
     while (!in_.at_end()) {
       start_ = in_.offset();
@@ -306,18 +303,17 @@ class MtlReader {
     } else if (key == "norm") {
       map(words, key, material_.normal_map);
     } else if (std::ranges::find(kSilent, key) == kSilent.end() && !material_.name.empty()) {
-      // A warning names the first few unknown keys.
       const std::string name = printable(key.substr(0, 24));
       if (unknown_.size() < 8 || unknown_.contains(name)) ++unknown_[name];
     }
   }
 
   /// Keys without a warning, because most files have them and look right without: ambient light,
-  /// highlights (which follow from roughness), refraction, models of illumination.
+  /// highlights (roughness decides), refraction, illumination models.
   static constexpr std::array<std::string_view, 8> kSilent = {"Ka",     "Ks", "Ni", "illum",
                                                               "map_Ka", "Tf", "Km", "sharpness"};
 
-  /// The transform of the material's first map, which holds for all its maps.
+  /// The transform of the material's first map, used for all its maps.
   TextureTransform transform_of(const MtlMaterial& m) {
     const TextureMap* first = nullptr;
     for (const TextureMap* const map : m.maps()) {
@@ -357,14 +353,14 @@ class MtlReader {
     if (b) to = {*r, *g, *b};
   }
 
-  /// Most write 1 − d as Tr, some d: worth a word where the two differ by more than their digits.
+  /// Most files write 1 − d as Tr, some d. Warns if they differ by more than their digits.
   void compare_alphas() {
     const auto [d, tr] = std::pair(material_.dissolve, material_.transparency);
     if (d && tr && std::abs(*d - (1 - *tr)) > 0.005F)
       wrong("d and Tr of " + io::quoted(material_.name) + " differ: d is taken");
   }
 
-  /// Options, then a name to the end of the line, which may hold spaces.
+  /// Reads options, then a name to the end of the line, which may hold spaces.
   void map(TextCursor& words, std::string_view key, TextureMap& to) {
     TextureMap map;
     while (!words.at_line_end() && words.peek() == '-' && option(words, map)) continue;
@@ -383,7 +379,7 @@ class MtlReader {
     }
   }
 
-  /// False, and `words` left alone, where a name begins with a dash.
+  /// False, with `words` unchanged, if a name begins with a dash.
   static bool option(TextCursor& words, TextureMap& map) {
     static constexpr std::array<std::string_view, 7> kOneWord = {
         "-blendu", "-blendv", "-boost", "-cc", "-colorspace", "-texres", "-type"};
@@ -424,14 +420,14 @@ class MtlReader {
 
   void say(const std::string& what) { scene_.warnings.push_back(name_ + ": " + what); }
 
-  /// Counted without an exception for each: a large file may be wrong in all its lines.
+  /// Counts instead of throwing, because a large file may be wrong in all its lines.
   void wrong(const std::string& message) {
     if (wrong_++ == 0)
       first_wrong_ = name_ + ":" + std::to_string(in_.line_of(start_)) + ": " +
                      (is_secret_ ? "cannot be read as a material's" : message);
   }
 
-  /// The first of a name wins; what stands before any name belongs to none.
+  /// The first material of a name wins. Statements before any name are dropped.
   void finish_material() {
     if (material_.name.empty()) return;
     const auto index = static_cast<std::uint32_t>(scene_.materials.size() + materials_.size());
@@ -445,9 +441,9 @@ class MtlReader {
   TextureReader texture_;
   Scene& scene_;
   std::unordered_map<std::string, std::uint32_t>& by_name_;
-  MtlMaterial material_{};              ///< that is read
-  std::vector<MtlMaterial> materials_;  ///< those before
-  std::size_t start_ = 0;               ///< of the statement that is read
+  MtlMaterial material_{};              ///< being read
+  std::vector<MtlMaterial> materials_;  ///< finished
+  std::size_t start_ = 0;               ///< of the statement being read
   std::size_t wrong_ = 0, unequal_ = 0;
   std::string first_wrong_{}, first_unequal_{};
   std::map<std::string, std::size_t> unknown_{};  ///< keys that are not drawn

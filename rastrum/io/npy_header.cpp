@@ -11,7 +11,7 @@
 namespace rastrum::io {
 namespace {
 
-/// numpy's own most (NPY_MAXDIMS of version 2).
+/// numpy's own maximum (NPY_MAXDIMS of version 2).
 constexpr std::size_t kMostAxes = 64;
 
 class NpyHeaderReader {
@@ -39,7 +39,7 @@ class NpyHeaderReader {
       fail("fortran_order is neither True nor False");
     shape(after("'shape'"), header);
     header.keeps_float64 = text_.find(kKeepsFloat64) != std::string_view::npos;
-    // A length that is too great takes numbers for a header, and all others for their neighbours.
+    // A length that is too great would take numbers for header, and shift all others.
     const std::size_t end = text_.find('}');
     if (end == std::string_view::npos ||
         text_.find_first_not_of(" \n", end + 1) != std::string_view::npos)
@@ -55,7 +55,6 @@ class NpyHeaderReader {
   [[nodiscard]] std::size_t byte(std::size_t i) const {
     return std::to_integer<std::size_t>(bytes_[i]);
   }
-  /// Returns the text behind `key` and its colon.
   std::string_view after(std::string_view key) {
     const std::size_t at = text_.find(key);
     if (at == std::string_view::npos) fail("its header has no " + std::string(key));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Triangles of an NPY file, (n, 3, 3) or (n, 9): corners with equal position bits become one
-// vertex, as those of STL do.
+// Triangles of an NPY file, (n, 3, 3) or (n, 9). As in STL, corners with equal position bits become
+// one vertex.
 #include <cstdint>
 #include <string>
 #include <type_traits>
@@ -15,7 +15,6 @@
 namespace rastrum::io {
 namespace {
 
-/// Numbers of type T as positions of type P.
 template <class T, class P>
 Mesh read_triangles(const std::byte* at, std::size_t count, Budget& budget) {
   Mesh mesh;

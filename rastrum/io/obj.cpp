@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Wavefront OBJ, strictly: a polygon has as many corners as it says, what is no number is an error,
-// and so is an index that does not exist, with file and line. Materials are mtl.cpp's. One mesh for
-// a file, so that triangles keep the file's order over groups, objects and materials; its points
-// and lines come behind it.
+// Wavefront OBJ, strictly: a bad number or an index that does not exist is an error with file and
+// line. mtl.cpp reads materials. A file is one mesh, so that triangles keep the file's order over
+// groups, objects and materials; points and lines follow.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -32,11 +31,11 @@ namespace rastrum::io {
 namespace {
 
 constexpr std::uint32_t kMissing = std::numeric_limits<std::uint32_t>::max();
-/// The colour of vertices without one, among others that have one.
+/// The colour of vertices without one where others have one.
 constexpr Vec4 kWhite{1, 1, 1, 1};
 
-/// The largest index that faces used of one array and where, to name the line once all values of
-/// the file are known: a face may stand before its vertices.
+/// The largest index that faces used of one array, and where. Faces may precede their vertices, so
+/// the line is named at the end.
 struct Use {
   std::uint32_t largest = 0;
   std::size_t offset = 0;
@@ -82,7 +81,7 @@ class ObjReader {
   }
 
  private:
-  /// One line; a backslash at its end joins the next.
+  /// Reads a line. A backslash at its end joins the next.
   void statement() {
     in_.skip_space();
     if (in_.at_end()) return;
@@ -148,7 +147,7 @@ class ObjReader {
     budget_.add(colors, {extra[0], extra[1], extra[2], n == 4 ? extra[3] : 1.0F});
   }
 
-  /// Reads the text again for its positions in float64.
+  /// Reads the text again, for positions in float64.
   void read_wide_positions() {
     const TextCursor behind = std::exchange(in_, text_.cursor());
     std::vector<Vec3d> wide;
@@ -170,7 +169,7 @@ class ObjReader {
     budget_.add(texcoords_, {u, 1 - v});  // ours count from the top
   }
 
-  /// The next index, which files count from 1, or negative from the end so far.
+  /// The next index. Files count from 1, or negative from the end so far.
   std::uint32_t index(const char* number, std::size_t count, const char* what, const char* whose,
                       Use& use) {
     const auto said = in_.number<std::int64_t>(number);
@@ -186,7 +185,7 @@ class ObjReader {
     return index("a vertex index", mesh_.positions.size(), "vertex", whose, use);
   }
 
-  /// v, v/vt, v//vn or v/vt/vn; what a slash announces may be missing.
+  /// v, v/vt, v//vn or v/vt/vn. The index after a slash may be missing.
   Corner corner() {
     Corner c{vertex_index("face", position_use_), kMissing, kMissing};
     if (in_.peek() != '/') return c;
@@ -227,7 +226,7 @@ class ObjReader {
         });
   }
 
-  /// `p v…`: points; `l v…` or `l v/vt…`: a polyline, whose texture coordinates nothing reads.
+  /// `p v…`: points. `l v…` or `l v/vt…`: a polyline, whose texture coordinates are ignored.
   void loose_element(bool is_line) {
     const char* const name = is_line ? "line" : "point";
     const std::size_t begin = loose_corners_.size();
@@ -250,8 +249,8 @@ class ObjReader {
     budget_.add(loose_, {is_line, material_, begin, n});
   }
 
-  /// Points and polylines, one geometry for each material, in the order in which they are first
-  /// used; of the whole file, so that a file of thousands of lines is no scene of thousands.
+  /// Points and polylines of the whole file, one geometry per material in order of first use, so
+  /// that thousands of lines do not become thousands of geometries.
   std::vector<Geometry> points_and_lines() {
     std::vector<Geometry> all;
     std::map<std::pair<bool, std::uint32_t>, std::size_t> numbers;
@@ -284,7 +283,7 @@ class ObjReader {
   }
 
   void read_library(const std::string& names) {
-    // Names may hold spaces; several names may share a line. The whole line is tried first.
+    // Names may hold spaces, and several may share a line. The whole line is tried first.
     const auto folder = file_.parent_path();
     std::error_code ignored;
     std::vector<FoundFile> found = {find_beside(folder, names)};
@@ -305,8 +304,8 @@ class ObjReader {
   void read_materials(const std::filesystem::path& library) {
     read_mtl(library, scene_, by_name_, transforms_, files_);
   }
-  /// The first library, mostly the only one, is read beside this text, and the pictures that it
-  /// names: until finish_libraries scene_ and by_name_ are its.
+  /// Reads the first library, mostly the only one, and its pictures beside this text. Until
+  /// finish_libraries that thread owns scene_ and by_name_.
   void begin_library() {
     if (parallel::Threads().concurrency() == 1) return;
     try {
@@ -316,7 +315,7 @@ class ObjReader {
                               read_materials(library);
                             });
     } catch (const std::system_error&) {
-      // No thread was to be had: it is read behind the text.
+      // No thread was available: it is read after the text.
     }
   }
   void finish_libraries() {
@@ -334,8 +333,8 @@ class ObjReader {
       material_ = known->second;
       return;
     }
-    // Ids of names in order of use; they become indices of Scene::materials at the end, because a
-    // library may stand behind its use.
+    // Ids of names in order of use. They become indices of Scene::materials at the end, since a
+    // library may come after its use.
     material_ = static_cast<std::uint32_t>(has_materials_.size()) + 1;
     has_materials_.emplace(name, material_);
     used_names_.push_back(name);
@@ -407,8 +406,8 @@ class ObjReader {
     say(said_unit(largest.rgb, unit));
   }
 
-  /// Drops what cannot be read, for the whole mesh: a picture without is right, one with some
-  /// value or other is not.
+  /// Drops an unreadable attribute of the whole mesh: a picture without it is right, one with
+  /// arbitrary values is not.
   template <class T>
   bool usable(const Use& use, std::vector<std::uint32_t>& indices, const std::vector<T>& values,
               const char* what) {
@@ -435,7 +434,7 @@ class ObjReader {
     store(mesh_.texcoords, std::move(texcoords_), std::move(texcoord_indices_));
   }
 
-  /// Gives separate coordinates to corners whose material moves its textures.
+  /// Gives separate coordinates to corners whose material transforms its textures.
   void transform_texcoords() {
     if (std::ranges::all_of(transforms_, [](const auto& t) { return t == TextureTransform{}; }))
       return;
@@ -481,7 +480,7 @@ class ObjReader {
     store(mesh_.normals, std::move(normals_), std::move(normal_indices_));
   }
 
-  /// Corners that number an attribute as they number positions share the positions' indices.
+  /// Corners that number an attribute as they number positions share those indices.
   template <class T>
   void store(Attribute<T>& attribute, std::vector<T> values, std::vector<std::uint32_t> indices) {
     attribute.values = std::move(values);
@@ -524,7 +523,7 @@ class ObjReader {
   std::vector<Vec2> texcoords_;
   std::vector<Vec3> normals_;
   std::vector<std::uint32_t> texcoord_indices_, normal_indices_;
-  /// A statement of points, or a polyline: corners [begin, begin + count) of loose_corners_.
+  /// Points of one statement, or a polyline: corners [begin, begin + count) of loose_corners_.
   struct Loose {
     bool is_line;
     std::uint32_t material;
@@ -546,7 +545,7 @@ class ObjReader {
   std::uint32_t material_ = 0;  ///< 0: no usemtl yet
   std::map<std::string, std::size_t> ignored_;
   std::size_t small_faces_ = 0, short_lines_ = 0;
-  std::future<void> reading_;  ///< last: it waits until nothing above is used any more
+  std::future<void> reading_;  ///< last: its destructor waits, before the others are gone
 };
 
 }  // namespace

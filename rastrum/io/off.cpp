@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // OFF (Geomview): vertices with normals (N), colours (C), texture coordinates (ST); polygons are
-// cut. '#' starts a comment. Many files have no "OFF" word, glue it to the first count, or have
-// colours without the C. A colour may follow the corners of a face: three or four numbers, or an
+// cut. '#' starts a comment. Many files lack the word "OFF", glue it to the first count, or have
+// colours without the C. After a face's corners may come its colour: three or four numbers, or an
 // index into a list.
 #include <cmath>
 #include <cstdint>
@@ -21,14 +21,13 @@
 namespace rastrum::io {
 namespace {
 
-/// Stands for the list of colours that indices refer to, which is part of Geomview and not of
-/// files.
+/// Replaces the list that colour indices refer to, which Geomview has and files have not.
 constexpr const char* kNumberedColors = "tab20";
 
 /// The unit of colours, which all of a file's vertices, or all its faces, decide.
 class ColorUnit {
  public:
-  /// `text`: the number as it is written.
+  /// `text`: the number as written.
   void add(float x, std::string_view text) {
     if (std::isfinite(x)) largest_ = std::max(largest_, x);
     if (text.find_first_of(".eE") != std::string_view::npos) whole_ = false;
@@ -59,7 +58,6 @@ class OffReader {
     const TextCursor first = in_;
     vertices();
     if (lie_far(mesh_.positions)) {
-      // Reads the positions once more, in float64.
       const TextCursor behind = std::exchange(in_, first);
       std::vector<Vec3d> wide;
       budget_.resize(wide, vertex_count_);
@@ -89,7 +87,7 @@ class OffReader {
     if (!what.empty()) warnings_.push_back(name_ + ": " + what);
   }
 
-  /// Blanks and comments; the end of a line is kept where the format minds it.
+  /// Skips blanks and comments; with `across_lines` ends of lines, too.
   void skip(bool across_lines) {
     for (;;) {
       across_lines ? in_.skip_space() : in_.skip_blanks();
@@ -188,12 +186,11 @@ class OffReader {
     }
   }
 
-  /// Marks colours without an alpha, and colours that are an index into a list, until all are
-  /// known. Alphas of files are finite.
+  /// Mark colours without an alpha, and colours that are an index into a list. Alphas of files are
+  /// finite.
   static constexpr float kNoAlpha = std::numeric_limits<float>::infinity();
   static constexpr float kNumbered = -kNoAlpha;
 
-  /// `n`: three or four.
   static Vec4 color(float* numbers, const std::string_view* words, int n, ColorUnit& unit) {
     for (int k = 0; k < n; ++k) {
       if (!std::isfinite(numbers[k])) numbers[k] = 0;
@@ -237,7 +234,6 @@ class OffReader {
     }
   }
 
-  /// Sets the colour of the triangles of the face that was just read.
   void face_color() {
     const std::size_t triangles = mesh_.indices.size() / 3;
     float numbers[5];

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The readers behind read_scene, one per format, over bytes in memory: read_scene maps the file and
-// calls them, the fuzzers call them with what they made up. `file` names the bytes in errors and
-// need not exist; textures and the like are opened by `reading`, whose budget arrays are taken
-// from.
+// The readers behind read_scene, one per format, over bytes in memory: a file's, or a fuzzer's.
+// `file` names the bytes in errors and need not exist. `reading` opens textures and the like; its
+// budget counts arrays.
 #pragma once
 
 #include <cstddef>
@@ -28,20 +27,19 @@ class Reading;
 [[nodiscard]] Scene parse_off(Bytes bytes, const std::filesystem::path& file, Reading& reading);
 /// Triangles, (n, 3, 3) or (n, 9).
 [[nodiscard]] Scene parse_npy(Bytes bytes, const std::filesystem::path& file, Reading& reading);
-/// .gltf and .glb are told apart by their first bytes.
+/// Tells .gltf and .glb apart by their first bytes.
 [[nodiscard]] Scene parse_gltf(Bytes bytes, const std::filesystem::path& file, Reading& reading);
 
-// Pictures: once their header is read, their memory is taken from the budget, before it is
-// allocated.
+// Pictures. The budget counts their memory before it is allocated.
 [[nodiscard]] Image<Rgba8> decode_png(Bytes bytes, const std::string& name, Budget& budget);
 [[nodiscard]] Image<Rgba8> decode_jpeg(Bytes bytes, const std::string& name, Budget& budget);
-/// Decodes by libwebp. Throws Error{unsupported} if that was missing at build time.
+/// By libwebp. Throws Error{unsupported} if that was missing at build time.
 [[nodiscard]] Image<Rgba8> decode_webp(Bytes bytes, const std::string& name, Budget& budget);
 [[nodiscard]] bool has_webp();
-/// Decodes one of these, by its first bytes.
+/// Any of these, by its first bytes.
 [[nodiscard]] Image<Rgba8> decode_picture(Bytes bytes, const std::string& name, Budget& budget);
 
-/// Linear light of a picture.
+/// Pictures in linear light.
 [[nodiscard]] Image<Vec3> decode_rgbe(Bytes bytes, const std::string& name, Budget& budget);
 [[nodiscard]] Image<Vec3> decode_exr(Bytes bytes, const std::string& name, Budget& budget);
 
@@ -61,9 +59,8 @@ struct TextureTransform {
   bool operator==(const TextureTransform&) const = default;
 };
 
-/// Adds the materials of an .mtl file, in its order, to `scene` and their names to `by_name` (the
-/// first of a name wins). A missing file becomes a warning. `transforms` becomes as long as
-/// Scene::materials.
+/// Adds an .mtl file's materials, in order, to `scene` and their names to `by_name` (the first of a
+/// name wins). A missing file becomes a warning. `transforms` becomes as long as Scene::materials.
 void read_mtl(const std::filesystem::path& file, Scene& scene,
               std::unordered_map<std::string, std::uint32_t>& by_name,
               std::vector<TextureTransform>& transforms, Reading& reading);
@@ -71,19 +68,18 @@ void read_mtl(const std::filesystem::path& file, Scene& scene,
 void parse_mtl(Bytes bytes, const std::filesystem::path& file, Scene& scene,
                std::unordered_map<std::string, std::uint32_t>& by_name);
 
-/// A vertex that does not exist, for messages: −1 and the like as many files mean them.
+/// A bad vertex index for messages: a negative number if the file means one.
 [[nodiscard]] inline std::string vertex_text(std::uint32_t index) {
   const auto i = static_cast<std::int32_t>(index);
   return i < 0 ? std::to_string(i) : std::to_string(index);
 }
 
-/// Adds an instance of `mesh`, whose triangles are all in its indices; a mesh without indices is
-/// empty.
+/// Adds an instance of `mesh`. A mesh without indices is empty.
 void add_mesh(Scene& scene, Mesh mesh);
 [[nodiscard]] Scene scene_of(Mesh mesh);
-/// Gives each triangle its material; all of them the mesh's where they are one.
+/// Gives each triangle its material; gives it to the mesh if all have the same.
 void set_materials(Mesh& mesh, std::vector<std::uint32_t> of_triangles);
-/// Adds an instance of `geometry`, which stands where its file's vertices do.
+/// Adds an instance of `geometry`, untransformed.
 void add_geometry(Scene& scene, Geometry geometry);
 
 }  // namespace rastrum::io

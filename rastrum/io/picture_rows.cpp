@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which writer of bands a picture takes, by the format and the pixels that come first.
+// Chooses a picture's writer of bands, by the format and the first pixels.
 #include <string>
 #include <variant>
 

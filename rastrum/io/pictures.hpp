@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The pictures of a scene's textures, which are most of what such a file takes to read: decoded
-// side by side.
+// A scene's pictures, decoded in parallel: they take most of the time to read such a file.
 #pragma once
 
 #include <cstddef>
@@ -21,17 +20,16 @@ namespace rastrum::io {
 
 class Pictures {
  public:
-  /// Copies that take() makes are taken from `budget`.
+  /// `budget` counts the copies that take() makes.
   explicit Pictures(Budget& budget) : budget_(budget) {}
-  /// `decode` is called by decode_all, on any thread; what it refers to must live until then.
-  /// Returns the picture's number.
+  /// decode_all calls `decode`, whose captures must live until then, on any thread. Returns the
+  /// picture's number.
   std::size_t add(std::function<Image<Rgba8>()> decode);
-  /// One more will take it.
+  /// One more use will take it.
   void use_again(std::size_t picture) { ++all_[picture].uses; }
-  /// All that were added, by what threads there are. Throws nothing of theirs.
+  /// Decodes in parallel. take() throws the errors.
   void decode_all();
-  /// For each use once; the last has no copy. Requires decode_all. Throws what decoding the picture
-  /// threw, at each call.
+  /// Call it once per use; the last gets no copy. Requires decode_all. Throws the picture's error.
   [[nodiscard]] Image<Rgba8> take(std::size_t picture);
 
  private:
@@ -39,19 +37,19 @@ class Pictures {
     std::function<Image<Rgba8>()> decode;
     Image<Rgba8> image;
     std::exception_ptr error;
-    int uses = 1;  ///< that are still to come
+    int uses = 1;  ///< still to come
   };
   Budget& budget_;
   std::vector<Picture> all_;
 };
 
-/// Whether an error is no fault of the picture that was read.
+/// Whether an error is not the picture's fault.
 [[nodiscard]] inline bool is_of_the_call(const Error& e) {
   return e.code() == Errc::out_of_memory || e.code() == Errc::stopped;
 }
 
-/// Adds the texture that make() gives, of a picture's `file`; returns its number. One that cannot
-/// be read is none, and a warning of the document `name`: it costs the texture, not the scene.
+/// Adds the texture of picture `file` that make() gives; returns its number. An unreadable one is
+/// none, and a warning of the document `name`: it costs the texture, not the scene.
 template <class Make>
 std::int32_t add_texture(std::vector<Texture>& textures, std::vector<std::string>& warnings,
                          const std::string& name, const std::filesystem::path& file,

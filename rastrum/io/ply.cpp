@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// PLY: ASCII and binary of both endians, faces (polygons are cut) and triangle strips, colours
-// of vertices or faces, pictures by `comment TextureFile`; without faces its edges are lines, or
-// else its vertices points. Binary
-// elements without lists are read property by property as strided columns; the common layouts
-// (`float x y z` side by side; faces of `uchar int[3]` alone) go through copies of 12 bytes, so
-// that a mapped file loads at about memory speed. Counts are checked against the bytes that are
-// there before anything is allocated.
+// PLY: ASCII and binary of both endians, faces (polygons are cut) and triangle strips, colours of
+// vertices or faces, pictures by `comment TextureFile`. Without faces its edges are lines, else its
+// vertices points. Binary elements without lists are read as strided columns, property by property.
+// Common layouts (`float x y z` side by side; faces of `uchar int[3]` alone) are copied 12 bytes at
+// a time, at about memory speed. Counts are checked against the bytes before anything is allocated.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -36,10 +34,9 @@ using ply::Type;
 struct Target {
   float* first = nullptr;
   std::size_t stride = 0;    ///< floats
-  double* number = nullptr;  ///< one of scalars instead, one a vertex
+  double* number = nullptr;  ///< one scalar per vertex instead
 };
 
-/// The use of each property of faces.
 struct FaceTargets {
   std::vector<int> scalars;  ///< its place in Mesh::scalars; −1: none
   ply::ColorPlaces colors;
@@ -78,7 +75,7 @@ class PlyReader {
                            {&mesh_.indices, &pictures_.corners(mesh_.indices.size())});
     else
       faces_to_cut_.finish(mesh_.positions, {&mesh_.indices});
-    // Triangles of later elements have none of an earlier one's numbers.
+    // Triangles of later elements have no number of an earlier one.
     for (NamedScalars& s : mesh_.scalars)
       if (s.per == Per::face) budget_.resize(s.values, mesh_.indices.size() / 3, kNoNumber);
     finish_colors();
@@ -109,7 +106,6 @@ class PlyReader {
     source_.skip(e);
   }
 
-  /// The vertices alone.
   Points cloud() {
     Points points;
     points.positions = std::move(mesh_.positions);
@@ -120,7 +116,7 @@ class PlyReader {
     return points;
   }
 
-  /// The edges as lines; with colours, no two edges share an end.
+  /// With colours, no two edges share an end.
   Lines lines() {
     Lines lines;
     if (edge_colors_.empty()) {
@@ -145,8 +141,6 @@ class PlyReader {
     return lines;
   }
 
-  // ---- vertices
-
   void read_vertices(const Element& e) {
     if (!mesh_.positions.empty()) source_.fail("there is more than one element 'vertex'");
     const std::vector<Target> targets = make_targets(e);
@@ -168,7 +162,6 @@ class PlyReader {
     });
   }
 
-  /// Reads the positions once more, in float64.
   void read_wide_positions(const Element& e, const ply::Source& first) {
     const std::array<int, 3> xyz = ply::find_positions(e).number;
     std::vector<Vec3d> wide;
@@ -204,7 +197,6 @@ class PlyReader {
 
   std::vector<Target> make_targets(const Element& e) {
     std::vector<Target> targets(e.properties.size());
-    // Property numbers[c] is component c of `values`.
     const auto place = [&](const auto& numbers, auto& values) {
       for (std::size_t c = 0; c < std::size(numbers); ++c) {
         if (numbers[c] < 0) continue;
@@ -242,7 +234,7 @@ class PlyReader {
     return targets;
   }
 
-  /// Three float32 of this machine's byte order side by side that go side by side.
+  /// Whether three float32 in this machine's byte order are contiguous, here and in their target.
   [[nodiscard]] bool is_vec3(const Element& e, const std::vector<Target>& t, std::size_t k) const {
     if (source_.swap() || k + 2 >= t.size() || t[k].first == nullptr) return false;
     for (std::size_t c = 0; c < 3; ++c)
@@ -282,7 +274,6 @@ class PlyReader {
     });
   }
 
-  /// Reads a property of vertex i.
   void value(const Element& e, std::size_t k, const Target& t, std::size_t i) {
     const Property& p = e.properties[k];
     if (t.number != nullptr)
@@ -296,7 +287,7 @@ class PlyReader {
              {t.first + t.stride * i, t.stride});
   }
 
-  // ---- scalars: all other properties
+  // Scalars are all other properties.
 
   std::vector<double>& add_scalars(const std::string& name, Per per, std::size_t count) {
     const bool is_known =
@@ -307,8 +298,6 @@ class PlyReader {
     budget_.resize(s.values, count, kNoNumber);
     return s.values;
   }
-
-  // ---- faces
 
   void read_faces(const Element& e, bool strips) {
     faces_ += e.count;
@@ -325,7 +314,7 @@ class PlyReader {
     const FaceTargets targets = face_targets(e, list);
     std::size_t first = 0;
     if (!source_.ascii()) {
-      // Enough if all faces are triangles, but never more than the remaining bytes can hold.
+      // Enough if all faces are triangles, but no more than the remaining bytes can hold.
       const std::size_t hold = source_.left() / ply::size_of(p.type);
       budget_.reserve(mesh_.indices, mesh_.indices.size() + std::min(hold, e.count * 3));
       if (!strips && !source_.swap() && e.properties.size() == 1 &&
@@ -365,7 +354,7 @@ class PlyReader {
                  e.find({"texcoord", "texcoords"}) >= 0) {
         t.picture = number;
       } else {
-        // Triangles of earlier elements have none.
+        // Triangles of earlier elements have no value.
         (void)add_scalars(p.name, Per::face, mesh_.indices.size() / 3);
         t.scalars[k] = static_cast<int>(mesh_.scalars.size() - 1);
       }
@@ -373,7 +362,7 @@ class PlyReader {
     return t;
   }
 
-  /// Faces of exactly `uchar 3, int[3]` for as long as they come: 13 bytes to 12. Returns how many.
+  /// Reads faces that are exactly `uchar 3, int[3]`, for as long as they come. Returns how many.
   std::size_t plain_triangles(const Element& e) {
     const Bytes rest = source_.rest();
     const std::byte* from = rest.data();
@@ -389,7 +378,6 @@ class PlyReader {
     return n;
   }
 
-  /// Adds the triangles of `polygon_`, with the properties of its face.
   void end_face(const FaceTargets& targets, const std::vector<double>& values, bool strips) {
     corners_.clear();
     emit(strips);
@@ -419,8 +407,8 @@ class PlyReader {
     return color;
   }
 
-  /// The corners of the triangles of `polygon_`: a face, or strips that −1 ends, every second
-  /// triangle turned so that all face the same way.
+  /// The corners of the triangles of `polygon_`: a face, or strips that −1 ends. Every second
+  /// triangle of a strip is turned to face the same way.
   void emit(bool strips) {
     const auto triangle = [&](std::size_t a, std::size_t b, std::size_t c) {
       for (const std::size_t k : {a, b, c}) corners_.push_back(static_cast<std::uint32_t>(k));
@@ -460,8 +448,6 @@ class PlyReader {
                  std::to_string(mesh_.positions.size()));
   }
 
-  // ---- edges
-
   void read_edges(const Element& e) {
     const int ends[2] = {e.find({"vertex1"}), e.find({"vertex2"})};
     if (ends[0] < 0 || ends[1] < 0 || e.has_list()) return skip(e);
@@ -480,9 +466,7 @@ class PlyReader {
     if (colors.any()) scale(edge_colors_, ply::color_types(e, colors), {}, "edges");
   }
 
-  // ---- colours
-
-  /// Divides colours by their units; where these are 0, the colours decide.
+  /// Divides colours by their units. If these are 0, the colours decide.
   void scale(std::span<Vec4> colors, const ply::ColorTypes& types, ply::ColorUnits units,
              const char* whose) {
     if (colors.empty()) return;

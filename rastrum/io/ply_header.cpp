@@ -52,7 +52,7 @@ Property parse_property(TextCursor& in) {
   return p;
 }
 
-/// Comments are free text, except for a few that some programs write.
+/// Comments are free text, but for a few that some programs write.
 void parse_comment(TextCursor& in, Header& header) {
   if (in.at_line_end()) return;
   const std::string_view word = in.token();
@@ -123,7 +123,7 @@ Header parse_header(Bytes bytes, const std::string& name) {
   std::string_view text = as_text(bytes.first(std::min(bytes.size(), kLongestHeader)));
   const std::size_t mark = byte_order_mark(text, name);
   text.remove_prefix(mark);
-  // The header's lines end in CR alone; binary data may follow it.
+  // Lines of a header may end in CR alone, and binary data may follow it.
   std::string copy;
   if (text.starts_with("ply\r") && !text.starts_with("ply\r\n")) {
     constexpr std::string_view kEnd = "end_header\r";

@@ -38,16 +38,16 @@ struct Element {
   std::size_t count = 0;
   std::vector<Property> properties;
 
-  /// Bytes of one in a binary file where every list is empty: exact without lists.
+  /// Bytes in a binary file if every list is empty.
   [[nodiscard]] std::size_t least_bytes() const;
   [[nodiscard]] bool has_list() const;
   /// The property of one of these names, or −1.
   [[nodiscard]] int find(std::initializer_list<std::string_view> names) const;
-  /// The same of one that is no list.
+  /// Likewise, but no list.
   [[nodiscard]] int find_number(std::initializer_list<std::string_view> names) const;
 };
 
-/// The full intensity in an element's colours; 0: the colours decide.
+/// Full intensity of an element's colours; 0: the colours decide.
 struct ColorUnits {
   float rgb = 0, alpha = 0;
 };
@@ -57,14 +57,13 @@ struct Header {
   std::vector<Element> elements;
   std::size_t size = 0;                    ///< bytes up to the first element
   std::vector<std::string> texture_files;  ///< `comment TextureFile NAME`
-  /// `comment colour_units ELEMENT RGB ALPHA`: in the small file of a selection, the units that the
-  /// whole file decides.
+  /// `comment colour_units ELEMENT RGB ALPHA` in a selection's file: the units of the large file.
   ColorUnits vertex_units, face_units;
-  /// `comment position_type float|double`, likewise: what positions in float64 become.
+  /// `comment position_type float|double`, likewise: the type that float64 positions become.
   std::optional<bool> wide_positions;
 };
 
-/// The properties that are N numbers of one attribute: all of them, or none.
+/// The properties of an attribute of N numbers: all of them, or none.
 template <std::size_t N>
 struct Places {
   std::array<int, N> number{};
@@ -76,8 +75,7 @@ struct Places {
 [[nodiscard]] Places<3> find_normals(const Element& e);
 [[nodiscard]] Places<2> find_texcoords(const Element& e);
 
-/// The properties that are colours, red, green, blue and alpha: their places, or −1. Without the
-/// first three there is none.
+/// Red, green, blue and alpha properties, or −1. Without the first three there is no colour.
 struct ColorPlaces {
   int channel[4] = {-1, -1, -1, -1};
   [[nodiscard]] bool any() const { return channel[0] >= 0; }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures of PLY files, as MeshLab writes them: `comment TextureFile NAME` in the header, and
-// texture coordinates of vertices, or for each face a list `texcoord` of its corners and
-// `texnumber`, the number of its picture.
+// Pictures of PLY files as MeshLab writes them: `comment TextureFile NAME` in the header, and
+// texture coordinates of vertices, or per face a list `texcoord` of its corners and the picture's
+// number, `texnumber`.
 #pragma once
 
 #include <cstddef>
@@ -23,14 +23,14 @@ class PlyPictures {
 
   [[nodiscard]] bool any() const { return !names_.empty(); }
 
-  /// Adds a face. `uv`: u and v of each of its corners, or nothing. `number`: its picture.
-  /// `corners`: for each corner of its triangles the corner of the face. `indices`: the number of
-  /// the mesh's indices with those of this face, which are the last.
+  /// Adds a face. `uv`: u and v per corner, or nothing. `number`: its picture. `corners`: the
+  /// face's corner for each corner of its triangles. `indices`: the number of the mesh's indices,
+  /// of which this face's are the last.
   void add_face(const std::vector<double>& uv, const std::vector<std::uint32_t>& corners,
                 double number, std::size_t indices);
 
   [[nodiscard]] bool has_faces() const { return !texcoords_.values.empty(); }
-  /// The texture coordinates that add_face has noted, one index for each of `indices` corners.
+  /// The texture coordinates of add_face, one index for each of `indices` corners.
   [[nodiscard]] std::vector<std::uint32_t>& corners(std::size_t indices) {
     reading_.budget.resize(texcoords_.indices, indices, kNone);
     return texcoords_.indices;

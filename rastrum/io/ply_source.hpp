@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The values of a PLY file's elements, one after the other, whether they are text or binary.
+// The values of a PLY file's elements in order, from text or binary.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@
 
 namespace rastrum::io::ply {
 
-/// Calls f with a value of the C++ type that `type` names.
+/// Calls f with a value of the C++ type of `type`.
 template <class F>
 auto with_type(Type type, F&& f) {
   switch (type) {
@@ -45,14 +45,14 @@ auto with_type(Type type, F&& f) {
   return with_type(type, [&](auto v) { return static_cast<double>(load<decltype(v)>(p, swap)); });
 }
 
-/// The largest number of a type, 1 for floats: full intensity of a colour's channel.
+/// Full intensity of a colour channel: the largest number of the type, 1 for floats.
 [[nodiscard]] inline double largest_channel(Type type) {
   if (!is_integer(type)) return 1;
   return with_type(
       type, [](auto v) { return static_cast<double>(std::numeric_limits<decltype(v)>::max()); });
 }
 
-/// The largest of the red and of the alpha channel's type; 0: there is none.
+/// The largest numbers of the types of red and of alpha; 0: there is none.
 struct ColorTypes {
   double rgb = 0, alpha = 0;
 };
@@ -72,8 +72,8 @@ struct ColorTypes {
   return is_open(types.rgb) || is_open(types.alpha);
 }
 
-/// Calls fail(why), which throws, if `left` bytes are too few for an element: in text, each value
-/// takes at least a character and a separator.
+/// Calls fail(why), which throws, if `left` bytes are too few for an element. In text a value takes
+/// at least a character and a separator.
 template <class Fail>
 void check_room(const Element& e, std::size_t left, bool ascii, const Fail& fail) {
   if (e.properties.empty() || e.count == 0) return;
@@ -105,28 +105,24 @@ class Source {
   [[noreturn]] void fail(const std::string& message) const {
     throw Error(Errc::bad_format, name_ + ": " + message);
   }
-  /// Throws if the remaining bytes are too few for an element.
   void check_room(const Element& e) const {
     rastrum::io::ply::check_room(e, left(), ascii_, [&](const std::string& why) { fail(why); });
   }
 
-  /// The next bytes of a binary file.
   [[nodiscard]] const std::byte* take(std::size_t n, const Element& e) {
     if (n > bytes_.size() - at_) fail("the file ends inside of '" + e.name + "'");
     const std::byte* p = bytes_.data() + at_;
     at_ += n;
     return p;
   }
-  /// The remaining bytes of a binary file.
   [[nodiscard]] Bytes rest() const { return bytes_.subspan(at_); }
 
-  /// The next number of a text.
   [[nodiscard]] float word(const Property& p) { return text_.word<float>(p.name.c_str(), true); }
   [[nodiscard]] double number(const Property& p, const Element& e) {
     if (ascii_) return text_.word<double>(p.name.c_str(), true);
     return number_at(take(size_of(p.type), e), p.type, swap_);
   }
-  /// The values of a list. `T`: int64 for a list of integers, or double.
+  /// `T`: int64 for a list of integers, or double.
   template <class T>
   void list(const Property& p, const Element& e, std::vector<T>& values) {
     const std::size_t n = list_count(p, e);
@@ -165,7 +161,7 @@ class Source {
   }
 
  private:
-  /// take() compares it with the remaining bytes.
+  /// take() checks it.
   std::size_t list_count(const Property& p, const Element& e) {
     if (ascii_) return text_.word<std::uint32_t>(("the count of " + p.name).c_str(), true);
     const double n = number_at(take(size_of(p.count_type), e), p.count_type, swap_);

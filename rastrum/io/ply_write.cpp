@@ -16,7 +16,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "the writer copies this machine's bytes; a big-endian one needs a swap here");
 
-/// A value that 8 bits hold exactly as the reader will divide it.
+/// Whether 8 bits hold the value exactly as the reader will divide it.
 bool is_byte(float x) {
   const float scaled = std::nearbyint(x * 255);
   return x >= 0 && x <= 1 && scaled * (1 / 255.0F) == x;
@@ -28,7 +28,6 @@ bool fit_bytes(std::span<const Vec4> colors) {
   });
 }
 
-/// Collects rows and hands them on in large pieces.
 class RowWriter {
  public:
   explicit RowWriter(AtomicFile& out) : out_(out) { bytes_.reserve(kSize); }
@@ -48,7 +47,7 @@ class RowWriter {
   std::vector<std::byte> bytes_;
 };
 
-/// The attributes of vertices. An empty one is left out.
+/// Empty attributes are left out.
 struct Vertices {
   std::span<const Vec3> positions, normals;
   std::span<const Vec2> texcoords;
@@ -57,7 +56,6 @@ struct Vertices {
   std::span<const Vec3d> wide{};  ///< float64 positions, which replace the others; empty: none
 };
 
-/// As a word of the header.
 std::string word_of(const std::string& name) {
   std::string word = name.empty() ? "scalars" : name;
   for (char& c : word)
@@ -65,7 +63,7 @@ std::string word_of(const std::string& name) {
   return word;
 }
 
-/// The scalars that PLY can hold: one number a vertex, or one a face.
+/// The scalars that PLY can hold: one number per vertex or face.
 std::vector<const NamedScalars*> scalars_of(const AtomicFile& out,
                                             const std::vector<NamedScalars>& all, Per per,
                                             std::size_t count) {
@@ -82,7 +80,7 @@ std::vector<const NamedScalars*> scalars_of(const AtomicFile& out,
   return chosen;
 }
 
-/// `faces`: null: none, and no element for them.
+/// `faces`: null: no element for them.
 void write_vertices(AtomicFile& out, const Vertices& v, const MeshView* faces,
                     const std::vector<const NamedScalars*>& face_scalars = {}) {
   const std::size_t vertices = v.positions.size();
@@ -138,7 +136,7 @@ void write_vertices(AtomicFile& out, const Vertices& v, const MeshView* faces,
   rows.flush();
 }
 
-/// As many of `values` as there are vertices; none where it has none.
+/// As many `values` as vertices, or none.
 template <class T>
 std::span<const T> each(const AtomicFile& out, const char* whose, const std::vector<T>& values,
                         std::size_t vertices, const char* what) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// PNG through libpng, to straight RGBA8: palettes, grey, tRNS and 16 bit expanded or scaled,
-// interlaced or not; or to heights, which keep their 16 bits. Strict: a damaged chunk is an error,
-// not a warning. libpng leaves by longjmp; so the two functions that call it hold no object with a
-// destructor, and what it needs is in a state that outlives them.
+// PNG through libpng, to straight RGBA8 (palettes, grey, tRNS, 16 bits, interlaced or not) or to
+// heights, which keep 16 bits. A damaged chunk is an error, not a warning. libpng leaves by
+// longjmp, so the two functions that call it hold no object with a destructor; their state outlives
+// them.
 #include <png.h>
 
 #include <algorithm>
@@ -28,9 +28,9 @@ namespace {
 struct PngReader {
   png_structp png = nullptr;
   png_infop info = nullptr;
-  std::span<const Bytes> parts;  ///< that are left
+  std::span<const Bytes> parts;  ///< still unread
   std::size_t done = 0;          ///< of the first
-  bool is_checked = false;       ///< sums of the picture's data
+  bool is_checked = false;       ///< sums of the picture's data are right
   char message[200] = "";
   png_uint_32 width = 0, height = 0;
   std::size_t raw_bytes = 0;  ///< filtered rows as compressed in the file
@@ -83,7 +83,7 @@ bool read_header(PngReader* state) {
   return true;
 }
 
-/// Rows of RGBA, of `channel_bytes` (1 or 2, in this machine's order) each.
+/// Rows of RGBA, `channel_bytes` (1 or 2, in this machine's order) per channel.
 bool read_rows(PngReader* state, png_bytepp rows, std::size_t channel_bytes) {
   if (setjmp(state->jump) != 0) return false;
   png_structp png = state->png;
@@ -97,7 +97,7 @@ bool read_rows(PngReader* state, png_bytepp rows, std::size_t channel_bytes) {
   png_set_gray_to_rgb(png);
   png_set_add_alpha(png, channel_bytes == 1 ? 0xFF : 0xFFFF, PNG_FILLER_AFTER);
   png_set_interlace_handling(png);
-  // The picture's chunk has been checked, or made, with what finds its sums faster.
+  // Faster code has checked, or made, the sums of the picture's chunk.
   if (state->is_checked) {
     png_set_crc_action(png, PNG_CRC_QUIET_USE, PNG_CRC_ERROR_QUIT);
     png_set_option(png, PNG_IGNORE_ADLER32, PNG_OPTION_ON);
@@ -115,7 +115,7 @@ bool read_rows(PngReader* state, png_bytepp rows, std::size_t channel_bytes) {
   throw Error(Errc::bad_format, name + ": is not a sound PNG: " + what);
 }
 
-/// Reads the header of what is a PNG of a size that its bytes can fill. `stored` is of them.
+/// Reads the header of a PNG whose size its bytes can fill. `stored`: made from `bytes`.
 void open(PngReader& state, Bytes bytes, const StoredPng& stored, const std::string& name) {
   // Apple's own variant: no zlib header, BGRA, premultiplied.
   if (bytes.size() >= 16 && as_text(bytes).substr(12, 4) == "CgBI")
@@ -126,7 +126,7 @@ void open(PngReader& state, Bytes bytes, const StoredPng& stored, const std::str
   state.parts = stored.parts();
   state.is_checked = stored.is_checked();
   if (!read_header(&state)) fail(name, state.message);
-  // Deflate makes at most 1,032 bytes of one: a small file cannot ask for a huge image.
+  // Deflate makes at most 1,032 bytes of one, so small files cannot ask for huge images.
   if (state.raw_bytes / 1032 > bytes.size()) fail(name, "it is too short for its size");
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// PNG: 8-bit RGBA, straight alpha. Bands of rows are deflated side by side, as pigz does it: each
-// begins with the last 32 KiB of the one before as its dictionary and ends on a whole byte, so the
-// file hardly grows (0.1 % of a rendered picture), and is the same for every number of threads.
+// PNG: 8-bit RGBA, straight alpha. Bands of rows are deflated in parallel, as in pigz: each has the
+// last 32 KiB of the one before as its dictionary and ends on a whole byte. The file hardly grows
+// (0.1 % of a rendered picture) and does not depend on the number of threads.
 #include <zlib.h>
 
 #include <algorithm>
@@ -18,11 +18,10 @@
 namespace rastrum::io {
 namespace {
 
-/// Measured on a rendered and a photographic picture of 1920 × 1080: level 1 with the filter UP is
-/// the fastest that still filters; level 3 takes 1.5 to 2 times as long for files 6 to 10 %
-/// smaller, level 6 4 to 6 times for 15 to 35 %, choosing between SUB and UP in each row 1.2 to 1.4
-/// times for about 0. No filter is 4 times faster on flat pictures, but files of photographs grow
-/// by half.
+/// Measured on a rendered and a photographic picture of 1920 × 1080. Level 1 with the filter UP is
+/// the fastest that still filters. Level 3 takes 1.5 to 2 times as long for files 6 to 10 %
+/// smaller, level 6 4 to 6 times for 15 to 35 %. Choosing SUB or UP in each row takes 1.2 to 1.4
+/// times for about 0. No filter is 4 times faster on flat pictures, but photographs grow by half.
 constexpr int kLevel = 1;
 constexpr unsigned char kFilterUp = 2;
 
@@ -64,17 +63,17 @@ void filter_row(ImageView<const Rgba8> image, int y, unsigned char* to) {
   for (std::size_t i = 0; i < n; ++i) to[i] = static_cast<unsigned char>(row[i] - above[i]);
 }
 
-/// Rows [first, last), and what became of them.
+/// Rows [first, last), deflated.
 class Band {
  public:
-  /// `before`: rows of the dictionary, that lie before the first.
+  /// `before`: rows before the first, for the dictionary.
   void begin(ImageView<const Rgba8> image, int first, int last, int before) {
     first_ = first;
     last_ = last;
     from_ = std::max(0, first - before);
     const std::size_t row = static_cast<std::size_t>(image.width) * 4 + 1;
     raw_.resize(static_cast<std::size_t>(last - from_) * row);
-    // Stored blocks and their heads at worst, and what ends the band.
+    // At worst stored blocks with their heads, and the band's end.
     data_.resize(raw_.size() + raw_.size() / 1000 + 1024);
   }
 
@@ -84,7 +83,7 @@ class Band {
       filter_row(image, y, raw_.data() + static_cast<std::size_t>(y - from_) * row);
     const std::size_t begin = static_cast<std::size_t>(first_ - from_) * row;
     z_stream z{};
-    // Raw, for the file has one header; memory and strategy as libpng takes them.
+    // Raw, because the file has one header. Memory and strategy are libpng's.
     done_ = deflateInit2(&z, kLevel, Z_DEFLATED, -15, 8, Z_FILTERED) == Z_OK;
     if (!done_) return;
     const std::size_t known = std::min(begin, kWindow);
@@ -124,8 +123,8 @@ class Band {
   bool done_ = false;
 };
 
-/// Rows wait until they fill as many bands as keep all threads busy, whatever the picture's size;
-/// those stay that the next bands' dictionary and filter look back at.
+/// Rows wait until they fill enough bands for all threads. It keeps those that the next band's
+/// dictionary and filter need.
 class PngRows final : public RowsOf<Rgba8> {
  public:
   PngRows(AtomicFile& out, int width, int height, int threads)
@@ -165,7 +164,6 @@ class PngRows final : public RowsOf<Rgba8> {
   }
 
  private:
-  /// Behind the last row that has come.
   [[nodiscard]] int end() const {
     return first_ + static_cast<int>(kept_.size() / static_cast<std::size_t>(width_));
   }
@@ -192,7 +190,7 @@ class PngRows final : public RowsOf<Rgba8> {
 
   AtomicFile& out_;
   int width_, height_;
-  int rows_ = 0, before_ = 0;  ///< of a band, and those before it that are its dictionary
+  int rows_ = 0, before_ = 0;  ///< of a band; those before it for its dictionary
   int done_ = 0;               ///< rows that are deflated
   int first_ = 0;              ///< of kept_
   std::vector<Rgba8> kept_;    ///< rows

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The doors of io.hpp: which reader for which file.
+// The entry points of io.hpp: which reader for which file.
 #include <rastrum/io.hpp>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ bool begins_character(char c) {
   return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
 }
 
-/// Returns read(); shortens the messages of its errors, which quote the file.
+/// Returns read(). Shortens the messages of its errors, which quote the file.
 template <class Read>
 auto in_short(const Read& read) {
   try {
@@ -65,7 +65,7 @@ const Reader& reader_of(const std::string& extension, const std::filesystem::pat
               name.string() + ": is no kind of mesh file that is read here (" + known + ")");
 }
 
-/// The format that the first bytes, or for a binary STL the size, are of; empty: they do not say.
+/// The format that the first bytes suggest, or the size of a binary STL; empty: none.
 std::string_view begins_as(Bytes bytes) {
   std::string_view text = as_text(bytes);
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
@@ -81,7 +81,7 @@ std::string_view begins_as(Bytes bytes) {
   return first != std::string_view::npos && text[first] == '{' ? ".gltf" : "";
 }
 
-/// For what a file with a wrong name leads to; empty where nothing is known.
+/// A hint for a file with a wrong name; empty if there is none.
 std::string wrong_name(Bytes bytes, const Reader& reader) {
   const std::string_view is = begins_as(bytes);
   if (is.empty() || reader_of(std::string(is), {}).parse == reader.parse) return {};
@@ -142,7 +142,6 @@ Scene parse(const Reader& reader, Bytes bytes, const std::filesystem::path& name
   }
 }
 
-/// Throws Error{io} that names files of the folder that could be given instead.
 [[noreturn]] void fail_folder(const std::filesystem::path& folder) {
   namespace fs = std::filesystem;
   std::set<fs::path> meshes;
@@ -168,7 +167,7 @@ Scene parse(const Reader& reader, Bytes bytes, const std::filesystem::path& name
 }  // namespace
 
 void add_mesh(Scene& scene, Mesh mesh) {
-  // Without indices the positions would be drawn in order, and a cloud of points is no triangles.
+  // Without indices the positions would be drawn in order, but a point cloud is no triangles.
   if (mesh.indices.empty()) mesh = {.name = std::move(mesh.name)};
   scene.instances.push_back({static_cast<std::uint32_t>(scene.meshes.size()), Mat4d::identity()});
   scene.meshes.push_back(std::move(mesh));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Limits for reading a document: its memory, and the files that it names.
+// Limits on reading a document: its memory, and the files it names.
 #pragma once
 
 #include <algorithm>
@@ -20,8 +20,8 @@
 
 namespace rastrum::io {
 
-/// The memory that a document may take: 64 bytes for each byte of it and of the files that it
-/// names, which is more than ordinary ones need, and ReadOptions::memory_limit. Thread-safe.
+/// The memory that a document may take: 64 bytes for each byte of it and its files, more than
+/// ordinary ones need, plus ReadOptions::memory_limit. Thread-safe.
 class Budget {
  public:
   static constexpr std::uint64_t kPerByte = 64;
@@ -29,12 +29,11 @@ class Budget {
   Budget(std::string name, std::uint64_t bytes, const ReadOptions& options)
       : name_(std::move(name)), allowance_(options.memory_limit), bytes_(bytes) {}
 
-  /// Call it before so many bytes are allocated. Throws Error{out_of_memory} if they are too many.
+  /// Call it before allocating. Throws Error{out_of_memory} if the limit is exceeded.
   void take(std::uint64_t bytes);
-  /// The same for `count` elements of `size` bytes.
   void take(std::uint64_t count, std::uint64_t size);
-  /// Room for `count` values in all, taken before it is made. As push_back does, it makes more than
-  /// is asked for, so that one more at a time is seldom one more room.
+  /// Takes and makes room for `count` values in all. Like push_back it makes more than asked for,
+  /// so that adding one by one seldom reallocates.
   template <class T>
   void reserve(std::vector<T>& values, std::size_t count) {
     const std::size_t had = values.capacity();
@@ -53,7 +52,7 @@ class Budget {
     reserve(values, values.size() + 1);
     values.push_back(value);
   }
-  /// An image whose pixels, and what is made beside each, take so many bytes.
+  /// `bytes`: of a pixel, and what is made beside it.
   template <class Pixel>
   [[nodiscard]] Image<Pixel> image(int width, int height, std::size_t bytes = sizeof(Pixel)) {
     take(static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height), bytes);
@@ -68,27 +67,25 @@ class Budget {
   std::atomic<std::uint64_t> bytes_, taken_{0};
 };
 
-/// A document that is being read. Thread-safe.
+/// Thread-safe.
 class Reading {
  public:
-  /// `file`: the document's name; files that it names are relative to its folder.
+  /// `file`: the document's name; its folder has the files that it names.
   Reading(const std::filesystem::path& file, std::uint64_t bytes, const ReadOptions& options)
       : budget(file.string(), bytes, options),
         folder_(file.parent_path()),
         allow_outside_(options.allow_outside) {}
 
-  /// The path of a file that the document calls `name`.
   [[nodiscard]] std::filesystem::path beside(const std::filesystem::path& name) const {
     return folder_ / name;
   }
-  /// Whether a file lies outside of the document's folder; links count as their targets. Messages
-  /// must not quote such a file.
+  /// Whether a file, after links, lies outside the document's folder. Messages must not quote such
+  /// a file.
   [[nodiscard]] bool is_outside(const std::filesystem::path& file) const;
-  /// The bytes of a file that the document, or one of its files, names; valid as long as this.
-  /// Throws Error{not_found | io}, also if it is no regular file, and Error{unsupported} if it lies
-  /// outside and that is not allowed.
+  /// The bytes of a file that the document or its files name; valid as long as this. Throws
+  /// Error{not_found | io}, also if it is no regular file, and Error{unsupported} if it lies
+  /// outside without permission.
   [[nodiscard]] std::span<const std::byte> open(const std::filesystem::path& file);
-  /// Throws Error{io} where a file that was opened has become shorter.
   void check() const;
 
   Budget budget;
@@ -100,8 +97,8 @@ class Reading {
   std::list<MappedFile> files_;
 };
 
-/// Returns the result of read(), which reads from `files`, a MappedFile or a Reading. Throws
-/// Error{io} if one has become shorter meanwhile or could not be read.
+/// Returns read(), which reads from `files`, a MappedFile or a Reading. Throws Error{io} if one has
+/// become shorter or could not be read.
 template <class Files, class Read>
 auto read_whole(const Files& files, const Read& read) {
   try {
@@ -109,11 +106,11 @@ auto read_whole(const Files& files, const Read& read) {
     files.check();
     return made;
   } catch (const Error&) {
-    files.check();  // zeros in the place of what was there are wrong, too
+    files.check();  // lost pages read as zeros, which are wrong, too
     throw;
   }
 }
-/// The same of read(bytes) of a file.
+/// Likewise for read(bytes) of a file.
 template <class Read>
 auto read_mapped(const std::filesystem::path& file, const Read& read) {
   const MappedFile mapped(file);

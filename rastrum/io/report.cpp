@@ -19,10 +19,10 @@
 namespace rastrum::io {
 namespace {
 
-/// At most this many lines of a kind; a file may have 10⁵ meshes.
+/// At most this many lines per kind: a file may have 10⁵ meshes.
 constexpr std::size_t kMostLines = 40;
 
-/// Numbers as by printf's %g and %.Ng, whatever the locale.
+/// As printf's %g and %.Ng, whatever the locale.
 template <class... Numbers>
 std::string format(std::string_view pattern, Numbers... numbers) {
   std::string text;
@@ -53,7 +53,7 @@ std::string named(const std::string& name) {
   return name.empty() ? "(no name)" : name.substr(0, 60);
 }
 
-/// The corners of a box: in six digits, and more if it is far from 0 for its size.
+/// The corners of a box, in six digits, or more if it is far from 0 for its size.
 std::string box_text(Vec3d a, Vec3d b) {
   double size = 0, away = 0;
   for (const auto& [low, high] : {std::pair(a.x, b.x), {a.y, b.y}, {a.z, b.z}}) {
@@ -88,21 +88,19 @@ Faults faults(const Mesh& mesh) {
       ++f.not_finite;
       continue;
     }
-    // In float64, where neither the differences nor the products of usual meshes vanish.
+    // In float64, where the differences and products of usual meshes do not vanish.
     const Vec3d a = p[1] - p[0], b = p[2] - p[0];
     if (a.y * b.z == a.z * b.y && a.z * b.x == a.x * b.z && a.x * b.y == a.y * b.x) ++f.no_area;
   }
   return f;
 }
 
-/// Calls line(i) for each of `count` things; more(n) names the n for which there are too many
-/// lines.
+/// Calls line(i) for each of `count` things. more(n) names the n that are too many.
 template <class Line, class More>
 void describe_each(std::size_t count, std::string& text, const Line& line, const More& more) {
   for (std::size_t i = 0; i < std::min(count, kMostLines); ++i) line(i);
   if (count > kMostLines) text += "  … and " + more(count - kMostLines) + '\n';
 }
-/// The rest of meshes and the like.
 auto more_of(const char* what) {
   return [what](std::size_t n) { return counted(n, what) + " more"; };
 }
@@ -125,7 +123,6 @@ void describe_meshes(const Scene& scene, std::string& text) {
   describe_each(scene.meshes.size(), text, line, more_of("mesh"));
 }
 
-/// A geometry in words.
 struct Line {
   std::size_t number;
   std::string operator()(const Points& p) const {
@@ -232,7 +229,7 @@ void describe_animations(const Scene& scene, std::string& text) {
 
 std::string describe(const Scene& scene) {
   const FloatScope floats;
-  const SceneBinding binding(scene);  // which checks that instances have meshes or geometries
+  const SceneBinding binding(scene);  // checks that instances have meshes or geometries
   std::vector<Faults> by_mesh;
   for (const Mesh& m : scene.meshes) by_mesh.push_back(faults(m));
   Faults all;

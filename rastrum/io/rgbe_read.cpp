@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Radiance pictures (.hdr, .pic): RGBE, each pixel three mantissas and an exponent, plain or in
-// runs of either kind. Facts: Ward, "Real Pixels" (Graphics Gems II); Radiance's file formats.
+// Radiance pictures (.hdr, .pic): RGBE, three mantissas and an exponent per pixel, plain or in runs
+// of either kind. Facts: Ward, "Real Pixels" (Graphics Gems II); Radiance's file formats.
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -58,7 +58,7 @@ class Rgbe {
   }
 
   void read_header() {
-    (void)line();  // "#?RADIANCE" or "#?RGBE", by which it was known
+    (void)line();  // "#?RADIANCE" or "#?RGBE", checked before
     for (std::string_view text = line(); !text.empty(); text = line()) {
       if (text.starts_with("FORMAT=") && text != "FORMAT=32-bit_rle_rgbe")
         throw Error(Errc::unsupported,
@@ -73,7 +73,8 @@ class Rgbe {
     }
     if (!(scale_ > 1e-30 && scale_ < 1e30)) fail("its exposures are beyond what light can be");
     read_size(line());
-    // A run is two bytes of 127 of one channel; of the old kind four bytes of 255 pixels.
+    // Two bytes make a run of at most 127 numbers of a channel; in the old form four bytes 255
+    // pixels.
     if (static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) / 64 > bytes_.size())
       fail("it is too short for its size");
   }
@@ -112,7 +113,7 @@ class Rgbe {
     return b(0) == 2 && b(1) == 2 && b(2) < 128;
   }
 
-  /// Channel after channel.
+  /// Channel by channel.
   void read_runs(std::vector<Pixel>& row) {
     const std::size_t width =
         static_cast<std::size_t>(bytes_[at_ + 2]) << 8 | static_cast<std::size_t>(bytes_[at_ + 3]);
@@ -132,8 +133,8 @@ class Rgbe {
       }
   }
 
-  /// Pixel after pixel; (1, 1, 1, n) repeats the one before n times, 256 n times where it follows
-  /// another such, and so on.
+  /// Pixel by pixel. (1, 1, 1, n) repeats the pixel before it n times; after another such, 256 n
+  /// times, and so on.
   void read_pixels(std::vector<Pixel>& row) {
     unsigned shift = 0;
     for (std::size_t x = 0; x < row.size();) {

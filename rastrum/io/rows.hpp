@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files of pictures whose rows come in bands, from the top. The writers of whole pictures are one
-// band.
+// Picture files whose rows come in bands, from the top. Writers of whole pictures use one band.
 #pragma once
 
 #include <memory>
@@ -17,13 +16,13 @@ class RowsOf {
   RowsOf(const RowsOf&) = delete;
   RowsOf& operator=(const RowsOf&) = delete;
   virtual ~RowsOf() = default;
-  /// The next rows: of the picture's width, no more than are missing, and rows do not overlap.
+  /// The next rows: of the picture's width, no more than are missing, not overlapping.
   virtual void add(ImageView<const Pixel> rows) = 0;
   /// All rows have come.
   virtual void finish() {}
 };
 
-/// These write everything that comes before the first row when they are made.
+/// These write all that precedes the first row when they are made.
 [[nodiscard]] std::unique_ptr<RowsOf<Rgba8>> png_rows(AtomicFile& out, int width, int height,
                                                       int threads);
 /// For Vec4, Vec3 and float.

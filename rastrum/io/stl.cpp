@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// STL, ASCII and binary. Corners with equal position bits become one vertex (which is what vertex
-// normals want to share); triangles keep the file's order. The facets' normals are not used: files
-// often have them zero or wrong, and the corners determine them. Text may have `color` lines:
-// inside a facet for that facet, before facets for all that follow.
+// STL, ASCII and binary. Corners with equal position bits become one vertex, as vertex normals
+// need; triangles keep the file's order. Facet normals are not used: they are often zero or wrong,
+// and the corners determine them. Text may have `color` lines: inside a facet for it, before facets
+// for all that follow.
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -47,8 +47,8 @@ Scene read_binary(Bytes bytes, std::size_t count, const std::string& name, Budge
   return scene;
 }
 
-/// Skips the name of a solid, which may be anything, up to the next line, or up to a facet or the
-/// solid's end on the same line.
+/// Skips a solid's name, which may be anything, to the line's end or a facet or the solid's end on
+/// it.
 void skip_name(TextCursor& in) {
   while (!in.at_line_end()) {
     TextCursor ahead = in;
@@ -62,7 +62,6 @@ void skip_name(TextCursor& in) {
   in.skip_line();
 }
 
-/// Reads text from `in` on, with positions of type P.
 template <class P>
 class AsciiReader {
  public:
@@ -156,7 +155,7 @@ class AsciiReader {
   Mesh mesh_;
   std::vector<P> positions_;
   VertexTable<P> vertex_{positions_, in_.left() / 400, budget_};
-  std::size_t start_ = 0;  ///< of the statement that is read
+  std::size_t start_ = 0;  ///< of the statement being read
   std::uint32_t corner_[3] = {};
   int corners_ = -1;  ///< −1: outside of a loop
   bool in_facet_ = false, in_solid_ = false;
@@ -173,8 +172,8 @@ Scene read_ascii(TextCursor in, std::size_t passed_over, const std::string& name
   return scene;
 }
 
-/// The lines before "solid" of a text; `in` is left there. None if it is no text: some binary files
-/// begin with "solid", too, but facets, colours or the end of the solid must follow it.
+/// The number of lines before "solid" in a text; leaves `in` there. None for other data: facets,
+/// colours or the solid's end must follow, since some binary files begin with "solid".
 std::optional<std::size_t> find_solid(TextCursor& in) {
   constexpr std::size_t kMostBefore = 100;
   for (std::size_t line = 0; line < kMostBefore && !in.at_end(); ++line) {
@@ -198,7 +197,7 @@ std::optional<std::size_t> find_solid(TextCursor& in) {
 Scene parse_stl(Bytes bytes, const std::filesystem::path& file, Reading& reading) {
   const std::string name = file.string();
   const bool exact = stl::is_exact(bytes);
-  // A binary header may be anything, but is unlikely to begin like a text in UTF-16.
+  // A binary header may be anything, but hardly begins like a text in UTF-16.
   const TextFile text(exact ? std::string_view{} : as_text(bytes), name);
   TextCursor solid = text.cursor();
   Scene scene;

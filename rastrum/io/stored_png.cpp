@@ -24,8 +24,8 @@ std::uint32_t crc(std::uint32_t of_before, Bytes bytes) {
   return libdeflate_crc32(of_before, bytes.data(), bytes.size());
 }
 
-/// Bytes of all rows, with the filter's that each begins with; none where the header is not one of
-/// a picture row by row.
+/// Bytes of all rows with their filter bytes; none unless the header is of a picture without
+/// interlacing.
 std::optional<std::size_t> row_bytes(Bytes file) {
   constexpr std::size_t kHeaderEnd = 8 + 8 + 13 + 4;
   constexpr unsigned char kSignature[8] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
@@ -45,10 +45,10 @@ std::optional<std::size_t> row_bytes(Bytes file) {
 
 struct Chunks {
   std::size_t begin, end;         ///< of all IDATs
-  std::vector<std::byte> joined;  ///< what they hold, where they are several
+  std::vector<std::byte> joined;  ///< their data, if they are several
   Bytes data;
 };
-/// The IDATs of a file where they are whole, and one after the other.
+/// The IDATs of a file, if they are whole and consecutive.
 std::optional<Chunks> picture_chunks(Bytes file) {
   Chunks found{};
   std::vector<Bytes> data;
@@ -77,9 +77,9 @@ std::optional<Chunks> picture_chunks(Bytes file) {
   return found;
 }
 
-/// Nothing that zlib would refuse.
+/// Accepts nothing that zlib would refuse.
 bool inflate(Bytes stream, std::span<std::byte> to) {
-  // libdeflate does not ask how far back a stream promised to look.
+  // libdeflate does not check the window size that a stream promises.
   constexpr unsigned kFarthest = 0x78;
   if (stream.empty() || std::to_integer<unsigned>(stream[0]) != kFarthest) return false;
   const std::unique_ptr<libdeflate_decompressor, decltype(&libdeflate_free_decompressor)>
@@ -101,7 +101,7 @@ StoredPng::StoredPng(Bytes file) {
 void StoredPng::store(Bytes file) {
   constexpr std::size_t kBlock = 65535, kMostRows = std::size_t{1} << 28;
   const std::optional<std::size_t> size = row_bytes(file);
-  // Deflate makes at most 1,032 bytes of one: a small file cannot ask for much memory.
+  // Deflate makes at most 1,032 bytes of one, so small files cannot ask for much memory.
   if (!size || *size > kMostRows || *size / 1032 > file.size()) return;
   const std::optional<Chunks> chunks = picture_chunks(file);
   if (!chunks) return;

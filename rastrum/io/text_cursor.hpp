@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Text files: their lines, and a place in one with tokens, numbers and errors that name file and
-// line. Numbers are read with std::from_chars, correctly rounded, so that a file gives the same
-// bits on every machine.
+// Text files: lines, tokens, numbers, and errors that name file and line. std::from_chars rounds
+// correctly, so a file gives the same bits on every machine.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +18,7 @@
 
 namespace rastrum::io {
 
-/// With question marks in the place of what does not print, for messages.
+/// Replaces what does not print by question marks, for messages.
 [[nodiscard]] inline std::string printable(std::string_view s) {
   std::string r(s);
   std::ranges::replace_if(
@@ -31,10 +30,9 @@ namespace rastrum::io {
   return std::string("'").append(printable(s.substr(0, 20))).append("'");
 }
 
-/// The bytes of the mark of UTF-8 that some editors put before a text: 0 or 3. Throws
-/// Error{unsupported} for UTF-16.
+/// The length of UTF-8's byte order mark: 0 or 3. Throws Error{unsupported} for UTF-16.
 [[nodiscard]] inline std::size_t byte_order_mark(std::string_view text, const std::string& name) {
-  // UTF-16 without its mark: one byte of a letter is 0.
+  // UTF-16 without its mark: one byte of each letter is 0.
   const bool wide = text.size() > 3 && (text[0] == '\0') != (text[1] == '\0') &&
                     (text[0] == '\0') == (text[2] == '\0') &&
                     (text[1] == '\0') == (text[3] == '\0');
@@ -43,7 +41,7 @@ namespace rastrum::io {
   return text.starts_with("\xEF\xBB\xBF") ? 3 : 0;
 }
 
-/// Borrows `text` and `name`; both must outlive it.
+/// Borrows `text` and `name`.
 class TextCursor {
  public:
   TextCursor(std::string_view text, const std::string& name)
@@ -69,7 +67,6 @@ class TextCursor {
   void skip_space() {
     while (at_ != end_ && is_space(*at_)) ++at_;
   }
-  /// To the first character of the next line.
   void skip_line() {
     at_ = std::find(at_, end_, '\n');
     if (at_ != end_) ++at_;
@@ -82,12 +79,11 @@ class TextCursor {
     while (last != first && is_blank(last[-1])) --last;
     return {first, static_cast<std::size_t>(last - first)};
   }
-  /// True where nothing but blanks is left of this line; stops at what there is.
+  /// Skips blanks. True if nothing else is left of this line.
   [[nodiscard]] bool at_line_end() {
     skip_blanks();
     return at_ == end_ || *at_ == '\n';
   }
-  /// The characters up to the next space; empty at the end.
   std::string_view token() {
     skip_space();
     const char* first = at_;
@@ -95,7 +91,7 @@ class TextCursor {
     return {first, static_cast<std::size_t>(at_ - first)};
   }
 
-  /// A number at this place, after blanks or, with `across_lines`, any space.
+  /// The next number, after blanks or, with `across_lines`, any space.
   template <class T>
   T number(const char* what, bool across_lines = false) {
     across_lines ? skip_space() : skip_blanks();
@@ -107,7 +103,7 @@ class TextCursor {
     at_ = next;
     return value;
   }
-  /// The same, for formats where numbers are words: what follows must be a space.
+  /// Likewise, for formats where a space must follow.
   template <class T>
   T word(const char* what, bool across_lines = false) {
     const T value = number<T>(what, across_lines);
@@ -116,8 +112,7 @@ class TextCursor {
     return value;
   }
 
-  /// The same where a reader goes on without it: nothing, and the place unmoved, where what comes
-  /// next on this line is no such word.
+  /// Likewise without an error: none if no such word is next on this line.
   template <class T>
   std::optional<T> optional_word() {
     skip_blanks();
@@ -129,25 +124,24 @@ class TextCursor {
   }
 
   [[noreturn]] void fail(const std::string& message) const { fail_at(offset(), message); }
-  /// The error for the line that holds `offset`.
+  /// Throws for the line that holds `offset`.
   [[noreturn]] void fail_at(std::size_t offset, const std::string& message) const {
     throw Error(Errc::bad_format, *name_ + ":" + std::to_string(line_of(offset)) + ": " + message);
   }
-  /// Counted only when it is asked for: keeping it would slow every reader.
+  /// Counted on demand: keeping it would slow every reader.
   [[nodiscard]] std::size_t line_of(std::size_t offset) const {
     assert(offset <= static_cast<std::size_t>(end_ - begin_));
     return 1 + static_cast<std::size_t>(std::count(begin_, begin_ + offset, '\n'));
   }
 
  private:
-  /// Quotes the text at the cursor, for messages.
   [[nodiscard]] std::string excerpt() const {
     if (at_ == end_) return "the end of the file";
     if (*at_ == '\n') return "the end of the line";
     const char* last = std::find_if(at_, end_, is_space);
     return quoted({at_, static_cast<std::size_t>(last - at_)});
   }
-  /// As std::from_chars, but a plus may stand before the number, and no float is out of range.
+  /// As std::from_chars, but a plus may come first, and no float is out of range.
   template <class T>
   std::from_chars_result parse(T& value) const {
     const char* first = at_ != end_ && *at_ == '+' ? at_ + 1 : at_;
@@ -159,7 +153,7 @@ class TextCursor {
       }
     return read;
   }
-  /// from_chars leaves the value alone where it does not fit: the nearest of 0 and infinity.
+  /// from_chars does not set a value out of range: this gives the nearest of 0 and infinity.
   template <class T>
   static T out_of_range(const char* first, const char* last) {
     double wide = 0;
@@ -167,7 +161,8 @@ class TextCursor {
       if (std::abs(wide) < 1) return static_cast<T>(wide);
       return std::copysign(std::numeric_limits<T>::infinity(), static_cast<T>(wide < 0 ? -1 : 1));
     }
-    // Too small for float64 as well where the exponent is negative or there is none but zeros.
+    // Beyond float64, too. Tiny if the exponent is negative or, without one, only zeros precede the
+    // point.
     const bool negative = *first == '-';
     const char* e = std::find_if(first, last, [](char c) { return c == 'e' || c == 'E'; });
     const bool tiny =
@@ -184,8 +179,7 @@ class TextCursor {
   const std::string* name_;
 };
 
-/// A whole text file. If lines end in CR alone, as on old Macs, it is copied with LF in their
-/// place.
+/// A whole text file. If lines end in CR alone, as on old Macs, it is copied with LF instead.
 class TextFile {
  public:
   /// Borrows its arguments. Throws as byte_order_mark.
@@ -200,7 +194,6 @@ class TextFile {
   TextFile(const TextFile&) = delete;
   TextFile& operator=(const TextFile&) = delete;
 
-  /// A cursor at the start.
   [[nodiscard]] TextCursor cursor() const { return {text_, *name_}; }
 
  private:

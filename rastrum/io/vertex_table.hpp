@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Corners of triangles that have no indices to vertices.
+// Makes vertices of the corners of triangles that have no indices.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +16,8 @@
 
 namespace rastrum::io {
 
-/// Vertices by position bits: open addressing over indices into the positions themselves, so that
-/// an entry costs 4 bytes and the key is read where it lies. `P`: Vec3 or Vec3d.
+/// Vertices by position bits: open addressing over indices into the positions, so an entry costs 4
+/// bytes and keys are read in place. `P`: Vec3 or Vec3d.
 template <class P>
 class VertexTable {
  public:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// WebP through libwebp, to straight RGBA8. The library is loaded when the first such picture is
-// read, as GDAL is (height_gdal.cpp), because few files have one.
+// WebP through libwebp, to straight RGBA8. The library is loaded when first used, as GDAL is
+// (height_gdal.cpp), because few files need it.
 #include <string>
 
 #include <rastrum/io/parse.hpp>
@@ -39,7 +39,7 @@ Image<Rgba8> decode_webp(Bytes bytes, const std::string& name, Budget& budget) {
   if (features(from, bytes.size(), &has, WEBP_DECODER_ABI_VERSION) != VP8_STATUS_OK) fail("");
   if (has.has_animation != 0)
     throw Error(Errc::unsupported, name + ": is a WebP animation, which is not read");
-  // libwebp takes as much again for some kinds of picture.
+  // libwebp needs as much again for some kinds of picture.
   Image<Rgba8> image = budget.image<Rgba8>(has.width, has.height, 2 * sizeof(Rgba8));
   const auto pixels = image.pixels();
   if (decode(from, bytes.size(), reinterpret_cast<std::uint8_t*>(pixels.data()),

@@ -13,8 +13,7 @@
 
 namespace rastrum::io {
 
-/// Rounds to float32. Numbers beyond its range become infinite; C++ leaves that conversion
-/// undefined.
+/// Rounds to float32. Numbers beyond its range become infinite; C++ leaves that undefined.
 [[nodiscard]] inline float float32_of(double value) {
   constexpr double kMost = std::numeric_limits<float>::max();
   if (value > kMost) return std::numeric_limits<float>::infinity();
@@ -25,15 +24,15 @@ namespace rastrum::io {
   return {float32_of(p.x), float32_of(p.y), float32_of(p.z)};
 }
 
-/// The box of finite positions that are rounded to float32.
+/// The box of the finite positions, rounded to float32.
 class PlaceBox {
  public:
   void add(Vec3 p) {
     if (is_finite(p)) box_.add(p);
   }
-  /// Whether on every axis some of it lies within 16 times its longest side of 0. Then, in a
-  /// picture of it that is 4,096 px wide, float32 moves its vertices by at most about the 1/256 px
-  /// of snapping. A near box stays near, whatever is added.
+  /// Whether on every axis part of it lies within 16 times its longest side of 0. Then float32
+  /// moves its vertices by at most about the 1/256 px of snapping, in a picture of it 4,096 px
+  /// wide. Adding positions keeps it near.
   [[nodiscard]] bool is_near() const {
     if (box_.empty()) return false;
     const Vec3d low(box_.min), high(box_.max), size = high - low;
@@ -57,7 +56,7 @@ class PlaceBox {
   return box.is_far();
 }
 
-/// Sets the positions of a mesh, points or lines; of float64 in both forms.
+/// Sets the positions of a mesh, points or lines; float64 ones in both forms.
 template <class G>
 void set_positions(G& geometry, std::vector<Vec3> positions, Budget& /*budget*/) {
   geometry.positions = std::move(positions);

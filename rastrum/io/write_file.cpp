@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The writers of io.hpp that take a name: begun, written and committed alone.
+// The writers of io.hpp that take a file name.
 #include <rastrum/io.hpp>
 
 namespace rastrum::io {

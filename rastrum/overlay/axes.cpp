@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The triad of axes in a corner: the camera's rotation alone, so it never leaves its place.
+// The triad of axes in a corner: the camera's rotation alone, so it never moves.
 #include <algorithm>
 #include <cmath>
 #include <string_view>

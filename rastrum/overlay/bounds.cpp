@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A box of the world with ticks and numbers, behind and around what is drawn.
+// A box of the world with ticks and numbers, behind and around the scene.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -38,12 +38,12 @@ class Box {
 
   [[nodiscard]] double low(int axis) const { return low_[static_cast<std::size_t>(axis)]; }
   [[nodiscard]] double high(int axis) const { return high_[static_cast<std::size_t>(axis)]; }
-  /// Whether the face across `axis` at its high (or low) end turns to the viewer.
+  /// Whether the box's face at the high (or low) end of `axis` faces the viewer.
   [[nodiscard]] bool faces_viewer(int axis, bool at_high) const {
     const double side = eye_[axis] - eye_[3] * (at_high ? high(axis) : low(axis));
     return at_high ? side > 0 : side < 0;
   }
-  /// A point of the edge along `axis` with the other two axes at an end each.
+  /// The point at `value` of a box edge along `axis`; the other axes are at an end each.
   [[nodiscard]] std::array<double, 3> at(int axis, double value, bool second, bool third) const {
     std::array<double, 3> p{};
     const int b = (axis + 1) % 3, c = (axis + 2) % 3;
@@ -62,7 +62,7 @@ class Box {
   [[nodiscard]] Screen screen(const Clip& c) const {
     return {(c.x / c.w + 1) / 2 * width_, (1 - c.y / c.w) / 2 * height_, c.z / c.w};
   }
-  /// In front of the camera and not so far aside that a path could not hold it.
+  /// Where `p` lies in the picture; none behind the camera or too far aside for a path.
   [[nodiscard]] std::optional<Screen> seen(const std::array<double, 3>& p) const {
     const Clip c = clip(p);
     if (!(c.w > 0)) return std::nullopt;
@@ -72,8 +72,8 @@ class Box {
   }
 
  private:
-  /// The homogeneous point that x, y and w of clip space do not tell apart: the eye, or the
-  /// direction towards an orthographic one. By cofactors of those rows.
+  /// The eye, or the direction towards an orthographic one: the homogeneous point where x, y and w
+  /// of clip space are 0, by cofactors of those rows.
   void find_eye() {
     const auto& x = to_clip_.m[0];
     const auto& y = to_clip_.m[1];
@@ -105,8 +105,8 @@ class Box {
   double eye_[4] = {};
 };
 
-/// A segment of the picture: cut to what is in front of the eye (the near plane hides no line) and
-/// around the picture.
+/// Cuts a segment to what lies in front of the eye, ignoring the near plane, and around the
+/// picture.
 std::optional<std::array<Screen, 2>> cut(const Box& box, Clip a, Clip b, double width,
                                          double height) {
   double from = 0, to = 1;
@@ -134,7 +134,7 @@ std::optional<std::array<Screen, 2>> cut(const Box& box, Clip a, Clip b, double 
   return std::array{box.screen(between(from)), box.screen(between(to))};
 }
 
-/// Blends segments where nothing of the picture is nearer: depth is linear in the picture.
+/// Blends segments where the picture is not nearer. Depth is linear in the picture.
 void draw_segments(const Canvas& canvas, const std::vector<std::array<Screen, 2>>& segments,
                    double width, Rgba8 color, ImageView<const float> depth) {
   for (const std::array<Screen, 2>& s : segments) {
@@ -145,7 +145,7 @@ void draw_segments(const Canvas& canvas, const std::vector<std::array<Screen, 2>
           std::clamp(((x + 0.5 - s[0].x) * dx + (y + 0.5 - s[0].y) * dy) / square, 0.0, 1.0);
       return s[0].depth + t * (s[1].depth - s[0].depth) >= static_cast<double>(depth(x, y));
     };
-    // Ends reach half a width farther, so that corners are whole.
+    // Half a width more at each end makes corners whole.
     const double more = width / 2 / std::sqrt(square);
     Path path;
     path.add_line(s[0].x - dx * more, s[0].y - dy * more, s[1].x + dx * more, s[1].y + dy * more,
@@ -161,8 +161,8 @@ struct BoxEdge {
   double length;
 };
 
-/// The silhouette edge along `axis` that gets the numbers: the lowest of those that lie flat, the
-/// leftmost of upright ones.
+/// The silhouette edge along `axis` that gets the numbers: the lowest flat one or the leftmost
+/// upright one.
 std::optional<BoxEdge> edge_for_labels(const Box& box, int axis) {
   std::optional<BoxEdge> best;
   double best_rank = 0;
@@ -188,7 +188,7 @@ struct Taken {
   double left, top, right, bottom;
 };
 
-/// Where letters at (x, y) lie, with air: numbers of two axes side by side are not read as one.
+/// The box of letters at (x, y). Its margin keeps numbers of two axes apart.
 Taken room_of(double x, double y, const TextExtent& extent, const TextStyle& style) {
   const double air = style.size_px * 0.15, aside = style.size_px * 0.5;
   const double w = extent.width_px, h = extent.height_px;
@@ -205,13 +205,13 @@ bool overlap(const Taken& a, const Taken& b) {
   return a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
 }
 
-/// A number that would lie on one that is there already, as at corners, is left out.
+/// Leaves out a number that would overlap an earlier one, as at corners.
 void draw_labels(const Canvas& canvas, const Box& box, const BoxEdge& edge, Vec2 centre,
                  const Measures& m, const Look& look, std::string_view name,
                  std::vector<Taken>& taken) {
   const Screen a = edge.ends[0], b = edge.ends[1];
   if (edge.length < 2 * m.letter) return;
-  // Away from the middle of the box, across the edge.
+  // Labels lie on the side away from the middle of the box.
   double ox = -(b.y - a.y) / edge.length, oy = (b.x - a.x) / edge.length;
   const double mx = (a.x + b.x) / 2, my = (a.y + b.y) / 2;
   if (ox * (mx - static_cast<double>(centre.x)) + oy * (my - static_cast<double>(centre.y)) < 0) {
@@ -241,7 +241,6 @@ void draw_labels(const Canvas& canvas, const Box& box, const BoxEdge& edge, Vec2
     taken.push_back(room);
     draw_text(canvas, x, y, t.label, style);
   }
-  // Beyond the numbers, as far as they reach in that direction.
   const double out = gap + m.letter * 1.1 +
                      std::fabs(ox) * (widest + half_of_word(name, m.letter)) +
                      std::fabs(oy) * m.letter * 0.7;
@@ -295,7 +294,7 @@ double room_for_bounds(const Camera& fitted, Vec3d low, Vec3d high, int width, i
       for (const bool third : {false, true})
         if (const Clip c = box.clip(box.at(0, x, second, third)); c.w > 0)
           farthest = std::max({farthest, std::fabs(c.x) / c.w, std::fabs(c.y) / c.w});
-  // Numbers and names take five letters of 1/40 of the picture: a tenth of it on either side.
+  // Numbers and names take a tenth of the picture on either side: five letters of 1/40.
   constexpr double kBoxPart = 0.8;
   return std::clamp(farthest / kBoxPart, 1.5, 3.0);
 }

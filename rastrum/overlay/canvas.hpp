@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Declarations that the drawing functions share, beside the public header.
+// Declarations that the drawing functions share.
 #pragma once
 
 #include <cmath>
@@ -8,10 +8,9 @@
 
 namespace rastrum::overlay {
 
-/// Throws Error{invalid_argument} where the views differ in size or have rows that overlap.
 void check(const Canvas& canvas);
 
-/// Lengths of a picture, from the size of its letters.
+/// Lengths in px, from the size of letters.
 struct Measures {
   double letter, line, halo, margin;
 };
@@ -31,7 +30,7 @@ struct Measures {
   return {.size_px = m.letter, .color = look.color, .halo_px = m.halo, .halo = look.halo};
 }
 
-/// Blends the halo of what `add(path, width)` adds, then that itself.
+/// Blends the halo of the shape that `add(path, wider)` adds, then the shape.
 template <class Add>
 void fill_with_halo(const Canvas& canvas, const Measures& m, const Look& look, Rgba8 color,
                     Add&& add, PixelTest test = {}) {
@@ -45,8 +44,7 @@ void fill_with_halo(const Canvas& canvas, const Measures& m, const Look& look, R
   fill(canvas, path, color, test);
 }
 
-/// How far an axis's name reaches to each side of its place, where it is more than a letter, for
-/// which there is room anyway.
+/// How far an axis's name reaches to each side of its place; a single letter has room anyway.
 [[nodiscard]] inline double half_of_word(std::string_view name, double size_px) {
   return name.size() > 1 ? measure_text(name, size_px).width_px / 2 : 0;
 }

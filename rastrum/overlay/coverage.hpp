@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How much of each pixel a path covers, in integers: the one place for it.
+// How much of each pixel a path covers, in integers.
 //
-// A pixel has 64 lines, at (j + 1/2) / 64 of its height. Where an edge crosses a line is found to
-// 1/256 px, rounded down, by Bresenham's division without a remainder lost; between crossings the
-// winding number is followed, and what it is not 0 on is covered (nonzero winding). So overlapping
-// polygons count once, an upright edge is exact, and a level one where it lies at a 64th.
+// A pixel has 64 lines, at (j + 1/2) / 64 of its height. Bresenham's division finds where an edge
+// crosses a line, rounded down to 1/256 px without losing the remainder. A line is covered where
+// its winding number is not 0, so overlapping polygons count once. Upright edges are exact; level
+// ones are where they lie at a 64th.
 #pragma once
 
 #include <algorithm>
@@ -21,12 +21,12 @@ inline constexpr int kLinesPerPixel = 64;
 inline constexpr int kLineStep = 256 / kLinesPerPixel;  ///< in 1/256 px
 inline constexpr std::int32_t kFullCoverage = 256 * kLinesPerPixel;
 
-/// An edge that goes down, and where it is on the line that is looked at.
+/// An edge that goes down, and its state on the current line.
 struct Edge {
   std::int32_t first, last;  ///< lines, `last` excluded
   std::int32_t x;            ///< in 1/256 px
-  std::int64_t rest;         ///< of the division by `height`, [0, height)
-  std::int32_t step;         ///< of x a line
+  std::int64_t rest;         ///< remainder of the division by `height`, in [0, height)
+  std::int32_t step;         ///< of x per line
   std::int64_t step_rest, height;
   std::int32_t winding;  ///< +1 downwards, −1 upwards
 
@@ -40,12 +40,11 @@ struct Edge {
   }
 };
 
-/// The edges of `path` that reach lines [0, lines), by their first line, and from left to right on
-/// it.
+/// The edges of `path` that reach lines [0, lines), by first line, then from left to right.
 [[nodiscard]] std::vector<Edge> edges_of(const Path& path, std::int32_t lines);
 
-/// Calls row(y, begin, end, coverage) for each row of pixels of width × height that the path
-/// reaches: coverage[x] in [0, 255] for x in [begin, end).
+/// Calls row(y, begin, end, coverage) for each row of width × height px that the path reaches:
+/// coverage[x] in [0, 255] for x in [begin, end).
 template <class Row>
 void for_each_covered_row(const Path& path, int width, int height, Row&& row) {
   const std::int32_t lines = height * kLinesPerPixel, right = width * 256;
@@ -59,8 +58,8 @@ void for_each_covered_row(const Path& path, int width, int height, Row&& row) {
   std::size_t next = 0;
   std::int32_t line = edges.front().first;
   int begin = width, end = 0;  // pixels that this row's spans touch
-  // Covers everything from x on to the right: `sums` counts whole pixels from there, `areas` the
-  // pixel's own share, so that a span costs as much as its ends.
+  // Covers all right of x. `sums` counts whole pixels, `areas` the share of x's own, so a span
+  // costs only its ends.
   const auto add = [&](std::int32_t x, std::int32_t sign) {
     const auto pixel = static_cast<std::size_t>(x >> 8);
     areas[pixel] += sign * (256 - (x & 255));
@@ -87,8 +86,8 @@ void for_each_covered_row(const Path& path, int width, int height, Row&& row) {
         finish_row(line / kLinesPerPixel);
       line = std::max(line, edges[next].first);
     }
-    // Edges of the line before are nearly sorted, so insertion sort is fast. New ones are merged
-    // in: strokes begin with many at once.
+    // Edges are nearly sorted from the line before, so insertion sort is fast. New ones are merged
+    // in, because strokes begin many at once.
     for (std::size_t i = 1; i < active.size(); ++i) {
       const Edge edge = active[i];
       std::size_t j = i;

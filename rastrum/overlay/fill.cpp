@@ -11,11 +11,11 @@
 namespace rastrum::overlay {
 namespace {
 
-/// The source's alpha is color.a · coverage / 255, kept as 255² parts to round once.
+/// Straight alpha. The source's is color.a · coverage / 255; sums are in 1/255², to round once.
 void blend(Rgba8& to, Rgba8 color, std::uint32_t coverage) {
   const std::uint32_t source = (color.a * coverage + 127) / 255;
   if (source == 0) return;
-  const std::uint32_t behind = to.a * (255 - source);  // of 255²
+  const std::uint32_t behind = to.a * (255 - source);  // in 1/255²
   const std::uint32_t front = source * 255, sum = front + behind;
   const auto channel = [&](std::uint32_t over, std::uint32_t under) {
     return static_cast<std::uint8_t>((over * front + under * behind + sum / 2) / sum);

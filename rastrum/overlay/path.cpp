@@ -56,7 +56,7 @@ void Path::add_line(double x0_px, double y0_px, double x1_px, double y1_px, doub
   const double dx = x1_px - x0_px, dy = y1_px - y0_px, length = std::sqrt(dx * dx + dy * dy);
   if (length == 0) return;
   const double nx = -dy / length * (width_px / 2), ny = dx / length * (width_px / 2);
-  // Turning the same way as discs and rectangles, so that nothing of one takes away from another.
+  // Oriented as discs and rectangles are, so that overlaps do not cancel.
   move_to(x0_px - nx, y0_px - ny);
   line_to(x1_px - nx, y1_px - ny);
   line_to(x1_px + nx, y1_px + ny);
@@ -64,8 +64,8 @@ void Path::add_line(double x0_px, double y0_px, double x1_px, double y1_px, doub
 }
 
 void Path::add_disc(double x_px, double y_px, double radius_px) {
-  // A chord over an angle of a lies r (1 − cos(a/2)) below its arc. Doubling the sides halves the
-  // angle; the sum and difference of the halves' points need no sine but the first.
+  // A chord over an angle a lies r (1 − cos(a/2)) below its arc. Doubling the sides halves the
+  // angle.
   int sides = 8;
   double c = 0.70710678118654752, s = 0.70710678118654752;  // of 45°
   while (radius_px * (1 - std::sqrt((1 + c) / 2)) > 1.0 / 16 && sides < 1024) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The bar that says which colour is which number.
+// The bar that shows which colour is which number.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -35,7 +35,7 @@ void fill_opaque(const Canvas& canvas, const Path& path, Vec4 color) {
   fill(canvas, path, {channel(color.x), channel(color.y), channel(color.z), 255});
 }
 
-/// The colour at part t of the bar, [0, 1].
+/// `t`: in [0, 1], along the bar.
 Vec4 color_at(const ScalarBar& bar, double t) {
   const std::size_t n = bar.colors.size();
   if (bar.discrete || !bar.categories.empty())
@@ -70,8 +70,8 @@ std::vector<Label> labels_of(const ScalarBar& bar, int wanted) {
   return labels;
 }
 
-/// A bar that runs up or to the right: `at(along, across)` are px from its low end, and across it
-/// from the edge that has no labels.
+/// A bar that runs up or to the right. `at(along, across)`: px from its low end and from the edge
+/// without labels.
 struct BarFrame {
   bool upright;
   double x, y, length, thickness;
@@ -94,8 +94,8 @@ void add_polygon(Path& path, const BarFrame& f, std::initializer_list<Vec2> alon
   }
 }
 
-/// From `low_end` px before the low end to `high_end` px behind the high one, pointed where these
-/// are not 0.
+/// From `low_end` px before the low end to `high_end` px after the high one; an end is pointed
+/// unless its length is 0.
 void add_outline(Path& path, const BarFrame& f, double low_end, double high_end, double wider) {
   const auto l = static_cast<float>(f.length), t = static_cast<float>(f.thickness),
              w = static_cast<float>(wider), a = static_cast<float>(low_end),
@@ -168,8 +168,7 @@ void draw_scalar_bar(const Canvas& canvas, const ScalarBar& bar, const Look& loo
   Path frame;
   add_outline(frame, f, low_tip, high_tip, m.line);
   fill(canvas, frame, look.color);
-  // The colours over it, one pixel of the bar's length at a time: the rest of the frame is its
-  // line.
+  // The colours, one pixel of length at a time. The rest of the frame is its line.
   const auto whole = static_cast<int>(length);
   for (int i = 0; i < whole; ++i) {
     Path slice;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Words: where each glyph of a line lies, in integers from the font's own units.
+// Places the glyphs of text, in integers from the font's own units.
 #include <algorithm>
 #include <cmath>
 
@@ -24,7 +24,7 @@ std::int32_t em_of(double size_px) {
   return static_cast<std::int32_t>(std::nearbyint(size_px * 256));
 }
 
-/// `units` of the font at an em of `em_fx8`, in 1/256 px.
+/// From the font's units to 1/256 px.
 std::int64_t scaled(std::int64_t units, std::int32_t em_fx8) {
   const std::int64_t em = font_metrics().units_per_em;
   return (2 * units * em_fx8 + em) / (2 * em);
@@ -46,8 +46,8 @@ std::int64_t advance_of(const std::vector<char32_t>& line) {
   return units;
 }
 
-/// Calls glyph(outline, origin) with each glyph and where its origin lies, before the style's
-/// turns, relative to the place of the words, in 1/256 px.
+/// Calls f(glyph, origin) for each glyph. Origins are in 1/256 px from the text's place, before the
+/// style's turns.
 template <class F>
 void for_each_glyph(std::string_view text, const TextStyle& style, F&& f) {
   const std::int32_t em = em_of(style.size_px);
@@ -75,8 +75,8 @@ void for_each_glyph(std::string_view text, const TextStyle& style, F&& f) {
   }
 }
 
-/// Calls contour(points), in the picture. Baselines lie on whole pixels, so that letters of a
-/// line are equally sharp.
+/// Calls contour(points) for each contour, in the picture. Baselines lie on whole pixels, so that a
+/// line's letters are equally sharp.
 template <class F>
 void for_each_outline(double x_px, double y_px, std::string_view text, const TextStyle& style,
                       std::int32_t tolerance_fx8, F&& contour) {
@@ -164,7 +164,7 @@ TextExtent measure_text(std::string_view text, double size_px) {
 std::vector<char32_t> missing_glyphs(std::string_view text) {
   std::vector<char32_t> missing;
   for (const char32_t code : decode_utf8(text)) {
-    // Bytes that are not UTF-8 decode to U+FFFD, which says nothing of the text's letters.
+    // Bytes that are not UTF-8 decode to U+FFFD, which is no letter of the text.
     const bool there = code == U'\n' || (code != 0xFFFD && !is_missing(glyph_of(code)));
     if (!there && std::find(missing.begin(), missing.end(), code) == missing.end())
       missing.push_back(code);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ticks at round numbers, and how they are written: in integers, so that 0.3 is never
-// 0.30000000000000004.
+// Ticks at round numbers and their labels, in integers, so that 0.3 is never 0.30000000000000004.
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -40,7 +39,7 @@ std::string superscript(int n) {
   return text;
 }
 
-/// number · 10^−decimals, with all of them.
+/// number · 10^−decimals, with all decimals.
 std::string decimal(std::int64_t number, int decimals) {
   std::string digits = std::to_string(std::abs(number));
   const auto places = static_cast<std::size_t>(std::max(decimals, 0));
@@ -49,7 +48,7 @@ std::string decimal(std::int64_t number, int decimals) {
   return number < 0 ? "−" + digits : digits;
 }
 
-/// number · 10^exponent, all of an axis alike: `most` is floor(log10) of its largest magnitude.
+/// number · 10^exponent, written alike on an axis. `most`: floor(log10) of the largest magnitude.
 std::string label_of(std::int64_t number, int exponent, int most) {
   if (number == 0) return "0";
   if (most < 5 && most > -4) {
@@ -60,8 +59,7 @@ std::string label_of(std::int64_t number, int exponent, int most) {
   return mantissa + "×10" + superscript(most);
 }
 
-/// Ticks at the two ends alone: for a range so narrow for its distance from 0 that steps are lost
-/// in rounding.
+/// Ticks at the ends alone, for a range so narrow at its distance from 0 that rounding loses steps.
 std::vector<Tick> ends(double low, double high) {
   std::vector<Tick> found;
   for (const double value : {low, high}) {
@@ -90,7 +88,7 @@ std::vector<Tick> linear_ticks(double low, double high, int wanted) {
   const auto first = static_cast<std::int64_t>(std::ceil(low / step - 1e-6)),
              last = static_cast<std::int64_t>(std::floor(high / step + 1e-6));
   std::vector<Tick> found;
-  // Steps are at most 2.5 times as long as asked for: with three wanted one lies within.
+  // Steps are at most 2.5 times as long as asked for, so with three wanted one lies within.
   if (first > last) return wanted < 3 ? linear_ticks(low, high, wanted + 1) : ends(low, high);
   const double largest =
       std::max(std::fabs(static_cast<double>(first)), std::fabs(static_cast<double>(last))) * step;

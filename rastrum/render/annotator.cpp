@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Annotations as the program, Python and the window draw them over a frame: which images they need,
-// which come above which, and default sizes.
+// Annotations over a frame, for the program, Python and the window: needed images, order, default
+// sizes.
 #include <rastrum/annotate.hpp>
 
 #include <algorithm>
@@ -21,7 +21,7 @@
 namespace rastrum {
 namespace {
 
-/// An image of that size; the old one is kept if it has it.
+/// The image, or a new one if its size differs.
 template <class T>
 ImageView<T> sized(Image<T>& image, int width, int height) {
   if (image.width() != width || image.height() != height) image = Image<T>(width, height);
@@ -90,7 +90,7 @@ struct Annotator::Impl {
   std::mutex one_at_a_time;
   int threads;
   std::optional<Isa> isa;
-  std::optional<Effects> effects;  ///< once there are some
+  std::optional<Effects> effects;  ///< made when first needed
   Image<float> view_depth, depth, factor;
   Image<Vec3> normals;
   Image<std::int64_t> ids, instances;
@@ -114,7 +114,7 @@ struct Annotator::Impl {
     if (a.occlusion) {
       AmbientOcclusion o = *a.occlusion;
       if (o.radius == 0) o.radius = 0.15 * bounding_sphere(scene).radius;
-      // Depth is enough: the frame need not find normals.
+      // Depth is enough, so the frame need not find normals.
       effects->occlude({.view_depth = surface.view_depth}, camera, o, canvas.color8, canvas.color);
     }
     if (a.dome) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The environments of a frame as they are seen, behind meshes and behind ground.
+// The environments of a frame, as seen behind meshes and ground.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace rastrum {
   });
 }
 
-/// Checked lights, which must outlive it, about who looks through `camera`.
+/// `lights` are checked, must outlive this, and light a scene seen through `camera`.
 class Around {
  public:
   Around(std::span<const Light> lights, const ToneMapping& tone, const Camera& camera, int width,
@@ -34,7 +34,6 @@ class Around {
     for (const raster::Surrounding& s : lights_.set().surroundings) sum = sum + s.at(d, 0);
     return sum;
   }
-  /// Linear light as a display shows it.
   [[nodiscard]] Vec3 shown(Vec3 light) const { return curve_(light); }
 
  private:

@@ -10,7 +10,7 @@
 namespace rastrum {
 namespace {
 
-/// Rows that are handed out together: a row of 1024 px takes less time than handing it out.
+/// Rows of a work item: a row of 1024 px takes less time than its scheduling.
 constexpr std::size_t kRows = 16;
 
 void widen(const float* depth, std::size_t n, DepthRange& range) noexcept {
@@ -28,7 +28,6 @@ void grey_row(const float* depth, std::size_t n, const DepthGreys& greys, Rgba8*
   }
 }
 
-/// Calls f(part, y) for the rows of each part of kRows, part by part.
 template <class F>
 void for_each_row(std::size_t rows, parallel::Threads* threads, const F& f) {
   const std::size_t parts = (rows + kRows - 1) / kRows;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Greys of depths with Highway, compiled once per instruction set; see depth_greys.hpp.
+// Greys of depths with Highway, per instruction set (depth_greys.hpp).
 
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
@@ -24,7 +24,7 @@ using I32 = hn::RebindToSigned<F32>;
 using F = hn::Vec<F32>;
 constexpr std::size_t kLanes = hn::MaxLanes(F32{});
 
-/// Calls use(at, depths, how many of them count) until n have been; the others are 0, no depth.
+/// Calls use(at, depths, count) for n depths. Lanes from `count` on are 0, no depth.
 template <class Use>
 HWY_INLINE void for_each_vector(const float* depth, std::size_t n, const Use& use) {
   const F32 d;

@@ -6,16 +6,16 @@
 namespace rastrum {
 namespace {
 
-// The time of one thread. This is within a factor of 2.5 of docs/log/triangles.md's first table,
-// from 968 triangles at 4096² (pixels) to 4.4 million (primitives), except for a soup of a million
-// large ones, whose samples nobody knows before.
+// One thread's time, within a factor of 2.5 of the first table in docs/log/triangles.md: from 968
+// triangles at 4096² (pixels) to 4.4 million (primitives), except for a soup of a million large
+// ones, whose samples are not known beforehand.
 constexpr double kHostPrimitive_ns = 50, kHostPixel_ns = 4;
-// The time of an H200, within a third of `rastrum bench cuda-frames` in place from 70 thousand to
-// 18 million triangles.
+// An H200's time, within a third of `rastrum bench cuda-frames` in place from 70 thousand to 18
+// million triangles.
 constexpr double kDevicePrimitive_ns = 0.04, kDevicePixel_ns = 0.02;
 /// Kernels, copies and a wait of a frame in one band.
 constexpr std::uint64_t kLaunches = 16;
-/// A position and a normal; the frame does not tell which other attributes there are.
+/// A position and a normal. The frame does not tell other attributes.
 constexpr std::uint64_t kVertexBytes = 24;
 
 template <class T>

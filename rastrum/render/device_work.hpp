@@ -7,8 +7,8 @@
 
 namespace rastrum {
 
-/// Estimates from primitives, pixels, the arrays that go over and the targets that come back. How
-/// many samples primitives cover is not known before: layers count as one surface.
+/// Estimates from primitives, pixels, arrays to copy and targets to fetch. Layers count as one
+/// surface, because covered samples are not known beforehand.
 [[nodiscard]] FrameWork device_work(const raster::FrameRequest& request);
 
 }  // namespace rastrum

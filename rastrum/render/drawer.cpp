@@ -67,7 +67,7 @@ class Drawer final : public raster::FrameDrawer {
   }
 
  private:
-  /// Decides the way of a frame: nothing else does.
+  /// Nothing else decides the way of a frame.
   [[nodiscard]] FramePlan plan(const FrameRequest& request) {
     const bool has_layers = request.needs_layers();
     DeviceChoice choice = choose(request, has_layers);
@@ -84,7 +84,7 @@ class Drawer final : public raster::FrameDrawer {
     plan.device_why = std::move(choice.why);
     return plan;
   }
-  /// Whether several samples of triangles, points and lines are opaque, and hide no picture.
+  /// Whether triangles, points and lines with several samples are opaque and drawn over no picture.
   [[nodiscard]] static bool is_sampled(const FrameRequest& request) {
     return request.samples > 1 && !request.pass.over && !request.has_quadrics() &&
            (request.sink == nullptr || request.sink->fate == raster::Translucent::keys_to_sink) &&
@@ -117,7 +117,7 @@ class Drawer final : public raster::FrameDrawer {
     const Ways& w = ways();
     const auto& make = path == Path::keys ? w.keys : path == Path::samples ? w.samples : w.layers;
     std::unique_ptr<raster::FrameDriver>& driver = drivers_[static_cast<std::size_t>(path)];
-    // The reference's lists of layers cannot be cut.
+    // The reference's lists of layers cannot be split.
     const bool limited = threads_ != nullptr || path == Path::keys;
     if (!driver)
       driver = std::make_unique<raster::FrameDriver>(make(), limited ? memory_limit_ : 0, memory_,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The drawer of a Renderer's frames. It decides which way a frame takes (FramePlan): by the methods
-// of the CPU's threads, those of the serial reference, or a device. The family
-// (papers/table/renderer.cpp) gives it other methods.
+// The drawer of a Renderer's frames. It decides the way of a frame (FramePlan): methods of the
+// CPU's threads, the serial reference's, or a device. The family (papers/table/renderer.cpp) gives
+// it other methods.
 #pragma once
 
 #include <functional>
@@ -21,8 +21,8 @@ namespace rastrum {
 
 struct DrawerOptions {
   Device device = Device::threads;  ///< not `automatic`
-  /// Why Device::automatic took CUDA; a frame then goes to the device only if that is expected to
-  /// be worth it (device_work.hpp). Empty: CUDA was asked for.
+  /// Why Device::automatic took CUDA. Frames then go to the device only if that is expected to pay
+  /// off (device_work.hpp). Empty: CUDA was asked for.
   std::string automatic_why{};
   std::uint64_t memory_limit = 0;  ///< bytes of scratch; 0: any
 };
@@ -31,38 +31,35 @@ struct DrawerOptions {
 using MakeFrameDrawer = std::function<std::unique_ptr<raster::FrameDrawer>(
     const DrawerOptions& options, MemoryAccount& memory, parallel::Threads* threads)>;
 
-/// The renderer's own drawer.
 [[nodiscard]] std::unique_ptr<raster::FrameDrawer> make_drawer(const DrawerOptions& options,
                                                                MemoryAccount& memory,
                                                                parallel::Threads* threads);
 
-/// The ways of the CPU, by FramePlan::Path; each is made when a frame first needs it. `samples` may
-/// be none: then layers draw it.
+/// The CPU's ways by FramePlan::Path, each made when first needed. Without `samples`, layers draw
+/// those frames.
 struct Ways {
   using MakeMethod = std::function<std::unique_ptr<raster::Method>()>;
-  /// The parts that `auto` chose. It makes one choice for all frames: on no row of `rastrum bench
-  /// auto` was another pair faster by enough to choose by it (docs/decisions/0028).
+  /// The choices of `auto`, for all frames: on no row of `rastrum bench auto` was another pair
+  /// enough faster (docs/decisions/0028).
   struct Automatic {
     bool rasterizer, visibility;
   };
   MakeMethod keys, layers, samples{};
-  std::optional<Automatic> automatic{};  ///< none: there was nothing to choose
+  std::optional<Automatic> automatic{};  ///< none: nothing to choose
 };
-/// Frames on a device.
 struct DeviceFrames {
   /// Null: the CPU draws all frames; `why_host` says why.
   std::unique_ptr<CudaRasterizer> device{};
   std::string why_host{};
   std::string why{};  ///< FrameStats::why of the device's frames begins with it
 };
-/// `make_ways` is called at once or, where there is a device, for the first frame that it has no
-/// code for, or that the CPU is expected to finish sooner.
+/// Calls `make_ways` at once or, with a device, for the first frame that the device cannot draw or
+/// the CPU is expected to finish sooner.
 [[nodiscard]] std::unique_ptr<raster::FrameDrawer> make_drawer_of(std::function<Ways()> make_ways,
                                                                   const DrawerOptions& options,
                                                                   MemoryAccount& memory,
                                                                   parallel::Threads* threads,
                                                                   DeviceFrames device = {});
-/// The serial reference.
 [[nodiscard]] std::unique_ptr<raster::FrameDrawer> make_reference_drawer(std::uint64_t memory_limit,
                                                                          MemoryAccount& memory);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ground under the lights of meshes. The light at a cell or a point is that of a matt surface there
-// (lights_scalar.hpp); the terrain's own functions find the shadows of directional lights.
+// Ground under the lights of meshes, lit as a matt surface at each cell or point
+// (lights_scalar.hpp). The terrain's own functions find the shadows of directional lights.
 #include <rastrum/on_terrain.hpp>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ void check_ground(const GroundLights& ground) {
   check_tone(ground.tone);
 }
 
-/// The direction of a directional light; exact on axes and diagonals, like directions of sweeps.
+/// Exact on axes and diagonals, like directions of sweeps.
 Sun sun_of(Vec3 to_light) {
   const double east = to_light.x, up = to_light.y, north = -static_cast<double>(to_light.z);
   const double a = std::abs(east), b = std::abs(north), most = std::max(a, b);
@@ -58,7 +58,6 @@ Vec3 ground_normal(Vec2 slope) {
   return {-slope.x * scale, scale, -slope.y * scale};
 }
 
-/// The lights of a frame as they fall on ground.
 class LightsOnGround {
  public:
   explicit LightsOnGround(const GroundLights& ground)
@@ -76,11 +75,11 @@ class LightsOnGround {
   LightsOnGround(const LightsOnGround&) = delete;
   LightsOnGround& operator=(const LightsOnGround&) = delete;
 
-  /// For each light with a place or direction: where it stands, if it casts shadows.
+  /// One for each light with a place or direction; none where it casts no shadows.
   [[nodiscard]] const std::vector<std::optional<Sun>>& suns() const { return suns_; }
 
-  /// The light that a white, matt surface shows at (x, height, y), where it rises by `slope`.
-  /// `share(i)`: how much of light i gets there.
+  /// The light that a white, matt surface reflects at (x, height, y), where it rises by `slope`.
+  /// `share(i)`: how much of light i arrives.
   template <class Share>
   [[nodiscard]] Vec3 at(double x, double y, float height, Vec2 slope, const Share& share) const {
     const raster::LightSet& set = set_.set();
@@ -95,7 +94,6 @@ class LightsOnGround {
     return sum;
   }
 
-  /// A ground colour in that light.
   [[nodiscard]] Rgba8 lit(Rgba8 color, Vec3 light) const {
     if (!maps_light_) {
       const Vec4 c = raster::straight_from_rgba8(color);
@@ -107,8 +105,8 @@ class LightsOnGround {
   }
 
  private:
-  /// Places are relative to this camera. Without lights of the camera, the result must not depend
-  /// on it.
+  /// Places are relative to this camera, on which results must not depend without lights of the
+  /// camera.
   static Camera camera_for(const GroundLights& ground) {
     if (is_of_camera(ground.lights)) return terrain_camera(ground.camera);
     Camera corner;
@@ -128,7 +126,6 @@ class LightsOnGround {
   std::vector<std::optional<Sun>> suns_;
 };
 
-/// How much of a directional light each cell of a map gets.
 Image<float> share_of(ImageView<const float> heights, const Sun& sun, const GroundLights& ground,
                       const terrain::ShadowOptions& options) {
   Image<float> share(heights.width, heights.height);

@@ -27,7 +27,7 @@ const InstanceView& instance_of(const SceneView& scene, const Located& at) {
   reject("instance ", at.instance, ": an index of ", of, " ", at.primitive, " is out of range");
 }
 
-/// Throws where they are out of range.
+/// Throws if they are out of range.
 raster::AxisEnds ends_of(const Located& at, const raster::QuadricGeometry& geometry) {
   const raster::AxisEnds ends = raster::axis_ends(geometry, at.primitive);
   if (std::max(ends.first, ends.second) >= raster::positions_of(geometry).size())
@@ -35,8 +35,8 @@ raster::AxisEnds ends_of(const Located& at, const raster::QuadricGeometry& geome
   return ends;
 }
 
-/// Makes `draw` that of the instance, which has vertices. Throws where those of the primitive are
-/// out of range.
+/// Makes `draw` that of the instance, which has vertices. Throws if the primitive's are out of
+/// range.
 void set_vertices_of(raster::Draw& draw, const Located& at, const InstanceView& instance,
                      const Mat4d& to_clip) {
   raster::set_vertices(draw, instance.geometry, to_clip);
@@ -45,8 +45,7 @@ void set_vertices_of(raster::Draw& draw, const Located& at, const InstanceView& 
       refuse_index(at, instance.mesh() != nullptr ? "triangle" : "primitive");
 }
 
-/// One instance as a scene of its own, so that what is asked about a primitive costs nothing for
-/// the others.
+/// One instance as a scene of its own, so that questions about a primitive cost nothing for others.
 struct Alone {
   Located at;
   InstanceView instance;
@@ -76,7 +75,7 @@ Barycentrics weights_of(const Fragment& f) {
   return {{f.weights.b[0], f.weights.b[1], f.weights.b[2]}};
 }
 
-/// The nearer of the two sides of a quadric that cover the pixel's centre: front, else back.
+/// On the nearer side of a quadric that covers the pixel's centre: front, else back.
 Barycentrics weights_of_quadric(const Alone& alone, int x, int y) {
   raster::QuadricSurface s;
   if (!s.find(*alone.quadrics, alone.at.primitive, alone.geometry.viewport)) return {};

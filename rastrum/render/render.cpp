@@ -61,21 +61,19 @@ void check(const FrameOptions& o) {
 struct Renderer::Impl {
   Impl(RendererOptions given, DeviceChoice choice, bool plain, MakeFrameDrawer maker);
 
-  /// A request for one frame.
   struct Call {
     const FrameOptions& frame;
     const Targets& targets;
     Pass pass{};
     RendererAccess::Apart apart{};
     raster::ForDevice device{};
-    const raster::KnownBlocks* known = nullptr;  ///< what is shaded; null: the scene is drawn
+    const raster::KnownBlocks* known = nullptr;  ///< blocks to shade; null: the scene is drawn
     bool is_shadow_map = false;
 
     [[nodiscard]] Call with(const FrameOptions& other, const Targets& filled) const {
       return {other, filled, pass, apart, device, known, is_shadow_map};
     }
   };
-  /// A frame of a caller's.
   FrameStats render_in_turn(const SceneView& scene, const Camera& camera, const Call& call,
                             StopToken stop) {
     return parallel::in_turn(one_at_a_time, stop, [&] {
@@ -84,14 +82,14 @@ struct Renderer::Impl {
     });
   }
   FrameStats render(const SceneView& scene, const Camera& camera, Call call);
-  /// The same without the environment behind the scene.
+  /// Without the environment behind the scene.
   FrameStats render_alone(const SceneView& scene, const Camera& camera, Call call);
   FrameStats draw_depth(SceneDraws& scene, const Call& call);
-  /// Draws the shadow maps of `frame`; `peak` becomes the most bytes that were in use meanwhile.
+  /// Draws the shadow maps of `frame`. `peak` becomes the most bytes in use meanwhile.
   std::span<const raster::LightShadow> draw_shadows(const SceneView& scene, const Camera& camera,
                                                     const FrameOptions& frame, std::uint64_t& peak,
                                                     ShadowRanks* ranks = nullptr);
-  /// `scene`: the scene that the draws are of; null: programs.
+  /// `scene`: the scene of these draws; null: programs.
   FrameStats draw(std::span<raster::Draw> draws, const raster::Shading& shading,
                   const raster::Testing& test, const Call& call, const SceneDraws* scene = nullptr);
 
@@ -103,11 +101,11 @@ struct Renderer::Impl {
   Isa isa = Isa::scalar;
   MemoryAccount memory;
   raster::TextureSet textures{memory};
-  raster::TextureSet light_textures{memory};  ///< apart: shadow maps use fewer
+  raster::TextureSet light_textures{memory};  ///< separate: shadow maps use fewer
   std::unique_ptr<parallel::Threads> threads;
   MakeFrameDrawer make;
-  /// The kind of frames that the drawer has scratch for. Scratch never shrinks: if memory is
-  /// limited, frames of another kind begin with a new drawer.
+  /// The frames that the drawer has scratch for. Scratch never shrinks, so with limited memory
+  /// frames of another kind begin with a new drawer.
   struct Kind {
     int width = 0, height = 0, samples = 0;
     bool layers = false;
@@ -115,7 +113,7 @@ struct Renderer::Impl {
   } kind;
   std::unique_ptr<raster::FrameDrawer> drawer;
   Shadows shadows{memory};
-  Image<float> own_depth;  ///< of Shader::depth, kept while frames are of it
+  Image<float> own_depth;  ///< of Shader::depth, kept while frames use it
 };
 
 Renderer::Impl::Impl(RendererOptions given, DeviceChoice choice, bool plain, MakeFrameDrawer maker)
@@ -213,7 +211,7 @@ FrameStats RendererAccess::draw(Renderer& renderer, std::span<raster::Draw> draw
 
 FrameStats Renderer::draw(std::span<const ProgramDraw> draws, const FrameOptions& frame,
                           const Targets& targets, const Pass& pass, StopToken stop) {
-  // Exceptions of a program pass as they are: only the copies are an error of the library.
+  // A program's exceptions pass unchanged; only the copies are the library's errors.
   std::vector<raster::Draw> copies =
       in_memory([&] { return std::vector<raster::Draw>(draws.begin(), draws.end()); });
   return RendererAccess::draw(*this, copies, {}, {}, frame, targets, pass, stop);
@@ -251,7 +249,7 @@ FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& ca
   const FrameOptions& o = call.frame;
   const Shader taken = shader_for(o.shader, scene);
   if (call.device.in_place) check_in_place(scene, call.targets, taken, o);
-  // A device reads no copies, and clip planes are given in the object space of each instance.
+  // A device reads no copies. Clip planes are in each instance's object space.
   InstanceRuns runs(scene, options.device != Device::cuda && o.clip_planes.empty(), threads.get());
   if (!call.device.in_place) {
     check_scene(runs, threads.get());
@@ -311,7 +309,7 @@ std::span<const raster::LightShadow> Renderer::Impl::draw_shadows(const SceneVie
   return shadows.draw(scene, camera, frame, draw_depth, ranks);
 }
 
-/// Grey by depth needs the range of depths in the picture, so it is a pass after the frame.
+/// Greys need the depth range of the picture, so they are a pass after the frame.
 FrameStats Renderer::Impl::draw_depth(SceneDraws& scene, const Call& call) {
   const FrameOptions& o = call.frame;
   const Targets& targets = call.targets;
@@ -323,7 +321,7 @@ FrameStats Renderer::Impl::draw_depth(SceneDraws& scene, const Call& call) {
   Targets first = targets;
   first.color8 = {};
   first.color = {};
-  ImageView<float> depths = targets.depth;  // what the greys are of
+  ImageView<float> depths = targets.depth;  // the depths to turn grey
   if (depths.empty() || call.pass.load) {
     if (own_depth.width() != o.width || own_depth.height() != o.height)
       own_depth = Image<float>(o.width, o.height);
@@ -336,7 +334,7 @@ FrameStats Renderer::Impl::draw_depth(SceneDraws& scene, const Call& call) {
   pass.device.why_not = call.device.why_not;
   FrameStats stats = draw(scene.draws(), unused, scene.test(), pass, &scene);
   add_stage(stats, "stretch depth", [&] {
-    // Greys are of all passes so far. The keys have their depths, whatever depths the caller keeps.
+    // Greys show all passes so far, whose depths the keys have.
     if (call.pass.load) depths_of_keys(targets.keys, depths, threads.get());
     stretch_depth(depths, o.background, targets, isa, threads.get());
   });
@@ -370,7 +368,7 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
         "before have drawn nor add samples to it; draw all in one pass");
   if (call.pass.load && call.apart.sink == nullptr)
     check_loaded(targets.keys, call.pass.first_id, threads.get());
-  std::vector<raster::Draw> over;  // the caller's stay as they are
+  std::vector<raster::Draw> over;  // leaves the caller's draws unchanged
   if (call.pass.over) {
     check_over(targets, call.pass, o);
     over.assign(draws.begin(), draws.end());
@@ -410,7 +408,7 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
   FrameStats stats =
       call.known == nullptr ? drawer->draw(request) : drawer->shade(request, *call.known);
   stats.peak_bytes = memory.peak();
-  // For a frame that the device leaves to the CPU, the drawer has set this.
+  // For frames that the device leaves to the CPU, the drawer has set this.
   if (options.device != Device::cuda) stats.device = options.device;
   if (stats.device_why.empty()) stats.device_why = device_why;
   return stats;
@@ -433,7 +431,7 @@ std::optional<Pick> Renderer::pick(const SceneView& scene, const Camera& camera,
     FrameOptions plain = frame;
     plain.lights.clear();
     plain.environment_behind = false;
-    // Shader::depth shows the same surfaces as these options.
+    // These options show the surfaces that Shader::depth shows.
     if (plain.shader == Shader::depth) {
       plain.shader = Shader::flat;
       plain.transparency.method = Transparency::none;

@@ -16,7 +16,7 @@
 namespace rastrum {
 namespace {
 
-/// first_beyond by all threads: of a million triangles it is a millisecond on one.
+/// On all threads: a million triangles take one thread a millisecond.
 std::size_t first_beyond(const IndexView& indices, std::size_t size, parallel::Threads* threads) {
   constexpr std::size_t kGrain = 1 << 16;
   const std::size_t parts = (indices.size() + kGrain - 1) / kGrain;
@@ -30,7 +30,6 @@ std::size_t first_beyond(const IndexView& indices, std::size_t size, parallel::T
   return *std::ranges::min_element(first);
 }
 
-/// One instance's arrays.
 class InstanceCheck {
  public:
   InstanceCheck(const InstanceView& instance, std::size_t number, parallel::Threads* threads)
@@ -75,7 +74,7 @@ class InstanceCheck {
     const auto refuse = [&](std::size_t i, const std::string& why) {
       fail(text_of("offsets[", i, "] is ", t.offsets.text(i), why));
     };
-    // Negative ones are beyond all positions.
+    // Negative offsets are beyond all positions.
     for (std::size_t i = 0; i < t.offsets.size(); ++i)
       if (t.offsets.wide(i) > t.positions.size())
         refuse(i, text_of(", but there are ", t.positions.size(), " positions"));
@@ -123,7 +122,7 @@ class InstanceCheck {
       check_enum(geometry.color_space, ColorSpace::linear, name() + ": its color_space");
   }
 
-  /// Checks the arrays that have one value for each element, or none.
+  /// Arrays with one value per element, or none.
   template <class G>
   void quadrics(const G& geometry, std::size_t count, const char* elements) const {
     const auto each = [&](std::size_t values, const char* array) {
@@ -171,7 +170,7 @@ class InstanceCheck {
   parallel::Threads* threads_;
 };
 
-/// By all threads, since a scene may have a million instances.
+/// On all threads, since a scene may have a million instances.
 void check_transforms(const InstanceRuns& runs, parallel::Threads* threads) {
   if (runs.firsts().instances.empty()) return;
   const std::size_t last = runs.firsts().instances.size() - 1;

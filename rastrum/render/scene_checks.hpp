@@ -9,20 +9,19 @@
 
 namespace rastrum {
 
-/// Throws Error{invalid_argument} naming the instance, the array and the place in it: faces that
-/// are none, attributes of a wrong number or whose indices are out of range, a look that is out of
-/// range, a transform that is not finite. The indices of positions are checked where they are read.
-/// Cost: O(offsets + indices of attributes) for each run, and O(instances). The given threads share
-/// the work.
+/// Throws Error{invalid_argument} that names the instance, the array and the place in it: bad
+/// faces, attributes of a wrong number or with indices out of range, a look out of range, a
+/// transform that is not finite. Positions' indices are checked where they are read. Cost:
+/// O(offsets + indices of attributes) per run, O(instances), shared by the threads.
 void check_scene(const InstanceRuns& runs, parallel::Threads* threads);
 
-/// Throws Error{invalid_argument} that names the instance and its array, for instances of quadrics:
-/// too few radii, colours or normals, an index or offset out of range, offsets that do not rise, a
-/// material that does not exist. O(indices).
+/// Throws Error{invalid_argument} that names a quadric instance and its array: too few radii,
+/// colours or normals, an index or offset out of range, falling offsets, a missing material.
+/// O(indices).
 void check_surfaces(const InstanceRuns& runs);
 
-/// Why a device, which reads packed float32 and uint32 of triangle lists, leaves a scene to the
-/// CPU; empty where it does not. O(instances).
+/// Why a device leaves a scene to the CPU; empty: it does not. Devices read packed float32 and
+/// uint32 of triangle lists. O(instances).
 [[nodiscard]] std::string why_not_on_device(const SceneView& scene);
 
 }  // namespace rastrum

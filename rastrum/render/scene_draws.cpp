@@ -13,7 +13,7 @@
 namespace rastrum {
 namespace {
 
-/// Nobody sees the colours that surfaces have where `depth` is drawn.
+/// With `depth`, nobody sees the colours of surfaces.
 Shader lit_model(Shader shader) {
   return shader == Shader::depth ? Shader::phong : shader;
 }
@@ -29,7 +29,7 @@ raster::SurfaceLook look_of(const SceneDraws::Options& o,
   return {model, blends_surfaces(o), o.frame.opacity, lights ? &lights->set() : nullptr};
 }
 
-/// None where nothing asks for them.
+/// None if nothing asks for them.
 std::optional<raster::FrameLights> lights_of(const SceneDraws::Options& o, const Camera& camera) {
   if (!raster::row_of(o.shader).lights || o.frame.lights.empty()) return {};
   return std::optional<raster::FrameLights>(std::in_place, o.frame.lights, o.shadows, camera,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A scene as the pipeline draws it: one draw for each run of alike instances, and their shading and
+// A scene as the pipeline draws it: a draw for each run of alike instances, their shading and
 // tests.
 #pragma once
 
@@ -27,19 +27,18 @@
 
 namespace rastrum {
 
-/// The draws of one frame. They and the rest that it returns point into it and into the scene.
+/// The draws of one frame. Its results point into it and into the scene.
 class SceneDraws {
  public:
   struct Options {
     const FrameOptions& frame;
     const Targets& targets;
-    Shader shader;  ///< what the frame's became for this scene (shader_for)
-    bool in_place;  ///< arrays are a device's: none of their values is read here
-    std::span<const raster::LightShadow> shadows{};  ///< one a light of the frame; empty: none
+    Shader shader;  ///< the frame's shader, resolved for this scene (shader_for)
+    bool in_place;  ///< arrays are a device's: no value is read here
+    std::span<const raster::LightShadow> shadows{};  ///< one per light of the frame; empty: none
   };
-  /// The scene must have been checked (check_scene). Brings the textures that the frame reads up to
-  /// date. Throws Error if planes, outputs and draws do not go together. O(runs + colours that may
-  /// be translucent).
+  /// Requires check_scene. Brings the frame's textures up to date. Throws Error if planes, outputs
+  /// and draws do not go together. O(runs + colours that may be translucent).
   SceneDraws(const InstanceRuns& runs, const Camera& camera, const Options& options,
              raster::TextureSet& textures, parallel::Threads* threads);
   SceneDraws(const SceneDraws&) = delete;
@@ -51,16 +50,15 @@ class SceneDraws {
   [[nodiscard]] const raster::Shading& shading() const { return shading_; }
   [[nodiscard]] const raster::Testing& test() const { return test_; }
   [[nodiscard]] bool linear_light() const { return linear_light_; }
-  /// The names of the draws in error messages.
   [[nodiscard]] raster::DrawNames names() const { return {"instance", &runs_}; }
-  /// Null if no target is of the surface at a pixel.
+  /// Null if no target shows the surface at a pixel.
   [[nodiscard]] const raster::SurfaceScene* surface() const {
     return surface_ ? &*surface_ : nullptr;
   }
 
  private:
-  /// Flags that some primitive has: `materials` by materials, colours and looks of meshes, which
-  /// MaterialScene reads, and `any` by anything.
+  /// Flags that some primitive has: `materials` from materials, colours and looks of meshes, which
+  /// MaterialScene reads; `any` from anything.
   struct Flags {
     std::uint32_t materials = 0, any = 0;
   };
@@ -73,19 +71,19 @@ class SceneDraws {
   void shade_scalar_meshes(const Options& options, const Camera& camera,
                            const raster::TextureSet& textures);
   Flags make_draws(const Options& options, const Mat4d& to_clip, parallel::Threads* threads);
-  /// Sets the instances whose copies the draws of `of_meshes` are; these are in the order of draws.
+  /// Sets which instances the draws of `of_meshes` copy. These are in the order of draws.
   template <class MeshDraw>
   void set_copies(std::vector<MeshDraw>& of_meshes) const;
 
   const InstanceRuns& runs_;
-  SceneView scene_;                            ///< of the first of each run
+  SceneView scene_;                            ///< the first of each run
   std::optional<raster::FrameLights> lights_;  ///< none: the fixed light
-  /// For instances that show scalars; empty if none has scalars that the frame asks for.
+  /// Empty unless an instance has scalars that the frame asks for.
   std::vector<ScalarColors> scalar_colors_;             ///< by mapping
   std::vector<raster::SurfaceScalars> scalars_;         ///< by instance
-  std::optional<std::vector<InstanceView>> mesh_list_;  ///< where there are others, too
+  std::optional<std::vector<InstanceView>> mesh_list_;  ///< if other geometry exists, too
   SceneView meshes_;  ///< the instances that are meshes and show no scalars
-  std::vector<InstanceView> scalar_mesh_list_;  ///< those that do
+  std::vector<InstanceView> scalar_mesh_list_;  ///< meshes that do
   std::optional<raster::ScalarMeshShader> scalar_meshes_;
   std::vector<std::uint32_t> material_flags_;  // draws point to them
   std::vector<raster::Draw> draws_;

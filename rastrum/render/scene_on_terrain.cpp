@@ -107,8 +107,7 @@ FrameStats SceneOnTerrain::draw(const TerrainScene& given, const FrameOptions& f
     if (!impl_->maps_light(scene, frame)) {
       targets.color8 = picture.color8;
     } else {
-      // Draws linear light over nothing; it is mapped, then laid over the ground as over a
-      // background.
+      // Draws linear light over nothing. It is mapped, then laid over the ground.
       if (linear.width() != width || linear.height() != height) linear = Image<Vec4>(width, height);
       std::ranges::fill(linear.pixels(), Vec4{});
       targets.linear = linear.view();

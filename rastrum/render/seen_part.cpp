@@ -21,7 +21,7 @@ HalfSpace row_of(const Mat4d& m, int i) {
   return {{m.m[i][0], m.m[i][1], m.m[i][2]}, m.m[i][3]};
 }
 
-/// Sutherland and Hodgman's clipping.
+/// Sutherland–Hodgman clipping.
 void clip(std::vector<Vec3d>& polygon, const HalfSpace& side) {
   std::vector<Vec3d> kept;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -33,7 +33,7 @@ void clip(std::vector<Vec3d>& polygon, const HalfSpace& side) {
   polygon = std::move(kept);
 }
 
-/// A picture's pyramid, or prism: across, up, and along the view axis.
+/// The pyramid, or prism, that a picture sees: across, up, and along the view axis.
 class Pyramid {
  public:
   Pyramid(const Camera& camera, int width, int height)
@@ -45,13 +45,13 @@ class Pyramid {
     far_ = is_parallel_ ? HalfSpace{-z.a, w_.b - z.b} : w_;
     unit_ = length(far_.a);
     if (is_parallel_) return;
-    // The near plane is where z = w; z = k w + c where they are parallel.
+    // At the near plane z = w. Where z and w are parallel, z = k w + c.
     const double k = dot(z.a, w_.a) / dot(w_.a, w_.a);
     near_ = (z.b - k * w_.b) / (1 - k);
     if (!(near_ > 0) || !std::isfinite(near_)) near_ = 0;
   }
   [[nodiscard]] bool is_parallel() const { return is_parallel_; }
-  /// The distance, in a unit of which `unit` make one unit of the world.
+  /// The distance; `unit` of it make one unit of the world.
   [[nodiscard]] const HalfSpace& far() const { return far_; }
   [[nodiscard]] double unit() const { return unit_; }
   [[nodiscard]] double near() const { return near_; }

@@ -11,15 +11,15 @@
 
 namespace rastrum {
 
-/// A place is kept where a · p + b ≥ 0.
+/// Keeps points with a · p + b ≥ 0.
 struct HalfSpace {
   Vec3d a;
   double b = 0;
   [[nodiscard]] double operator()(const Vec3d& p) const { return dot(a, p) + b; }
 };
 
-/// Six half-spaces in opposite pairs, and their corners: number k has a bit for the second of each
-/// pair.
+/// Six half-spaces in opposite pairs, and their corners. Bit i of a corner's number chooses the
+/// second of pair i.
 struct Hexahedron {
   HalfSpace sides[6];
   Vec3d corners[8];
@@ -29,12 +29,12 @@ struct Hexahedron {
 /// The corners of the intersection of `parts`, and maybe other points on its faces.
 [[nodiscard]] std::vector<Vec3d> common_corners(std::span<const Hexahedron> parts);
 
-/// The part of space that a camera with a matrix sees from one distance to another, in units of w.
+/// The space that a camera with a matrix sees between two distances, in units of w.
 [[nodiscard]] Hexahedron frustum(const Camera& camera, double first, double last);
 
 /// The part of the box that a W × H picture sees, in slices of distance, near to far: one if the
-/// far end is at most 6 times as far as the near end or the projection is parallel, two up to 16
-/// times, else four. None if nothing is seen. `reach`: FrameOptions::shadow_distance.
+/// projection is parallel or the far end is at most 6 times as far as the near end, two up to 16
+/// times, else four; none if nothing is seen. `reach`: FrameOptions::shadow_distance.
 [[nodiscard]] std::vector<Hexahedron> seen_slices(Vec3d low, Vec3d high, const Camera& camera,
                                                   int width, int height, double reach);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The names of the built-in shaders, and the shader that `automatic` takes.
+// The names of the built-in shaders, and the choice of `automatic`.
 #include <span>
 #include <string>
 #include <string_view>

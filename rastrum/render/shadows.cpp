@@ -16,13 +16,11 @@
 namespace rastrum {
 namespace {
 
-/// Texels around the part that is needed: a place moves three along its normal, and reads two
-/// further.
+/// Texels around the needed part: a lookup moves three along the normal and reads two further.
 constexpr double kBorder = 6;
-/// Columns and rows are multiples of this, so that sizes seldom change.
+/// Sizes are multiples of this, so that they seldom change.
 constexpr int kGranule = 64;
 
-/// A light of the camera's as one of the world.
 Light in_world(Light light, const Camera& camera) {
   if (!light.of_camera) return light;
   light.of_camera = false;
@@ -56,9 +54,9 @@ class Eye {
     half_ = elementary::tan(static_cast<double>(spot->outer_rad) * 1.01 + 0.0025);
   }
 
-  /// The window of the plane for the part of the scene in `seen`; none if that is empty. `size`:
-  /// the most texels across. A texel's width is a power of two, and texels lie on multiples of it,
-  /// so that a moving camera keeps them.
+  /// The window of the plane for the scene's part in `seen`; none if that is empty. `size`: most
+  /// texels across. A texel's width is a power of two and texels lie on its multiples, so that a
+  /// moving camera keeps them.
   struct View {
     Camera camera;
     int width = 0, height = 0;
@@ -78,7 +76,7 @@ class Eye {
     }
     const double widest = std::max(high[0] - low[0], high[1] - low[1]);
     if (!(widest >= 0 && widest < inf)) return std::nullopt;
-    // Texels are at least so wide that float64 tells them apart.
+    // Texels are wide enough for float64 to tell them apart.
     const double far_off = std::max({std::abs(low[0]), std::abs(low[1]), std::abs(high[0]),
                                      std::abs(high[1]), std::numeric_limits<double>::min()});
     int exponent = 0;
@@ -124,7 +122,7 @@ class Eye {
       m.m[2][3] += (most_ + margin()) / (most_ - least_ + 2 * margin());
     return m;
   }
-  /// A margin, so that nothing lies on the near or far plane, however flat the scene is.
+  /// Keeps the scene off the near and far planes, however flat it is.
   [[nodiscard]] double margin() const {
     return 0.01 * (most_ - least_) + 1e-9 * std::max(std::abs(most_), std::abs(least_)) +
            std::numeric_limits<float>::min();
@@ -139,7 +137,7 @@ class Eye {
     const double middle[2] = {first[0] * v.texel + half[0], first[1] * v.texel + half[1]};
     double nearest = reach_ * kClosest;
     if (is_spot()) {
-      // The nearest corner of the box in the window decides.
+      // The nearest corner of the box in the window decides the near plane.
       v.camera.matrix = to_clip(middle, half, nearest);
       double least = reach_;
       const Hexahedron window = frustum(v.camera, nearest, reach_);
@@ -150,9 +148,8 @@ class Eye {
     v.camera.matrix = to_clip(middle, half, nearest);
   }
 
-  /// A spot's near plane, as a part of its reach: at least kClosest outside of the scene's box, and
-  /// kInside inside it, where triangles may pass the plane and a nearer one would cost digits of
-  /// depth.
+  /// A spot's near plane, in parts of its reach: at least kClosest outside the scene's box, and
+  /// kInside inside, where triangles may pass it and a nearer one would cost digits of depth.
   static constexpr double kClosest = 1e-6, kInside = 1e-4;
 
   Hexahedron box_;

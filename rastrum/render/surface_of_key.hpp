@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From the key of a pixel to what is seen there.
+// The surface that a pixel's key names.
 #pragma once
 
 #include <cstdint>

@@ -13,7 +13,7 @@
 
 namespace rastrum {
 
-/// The quadrics of this geometry; none if it is of another kind.
+/// None if it is of another kind.
 [[nodiscard]] std::optional<raster::QuadricGeometry> quadrics_of(GeometryRef geometry);
 
 /// The draws of a frame's quadrics, which refer to this object.
@@ -23,7 +23,7 @@ class SurfaceDraws {
                int width, int height)
       : look_(look), shader_(look, scene.materials, camera, width, height), scene_(scene) {}
 
-  /// Makes the draw of an instance with these scalars and returns true, if it is quadrics.
+  /// If the instance is quadrics, makes its draw with these scalars and returns true.
   bool add(const InstanceView& instance, const raster::SurfaceScalars& scalars,
            const Mat4d& world_to_clip, raster::Draw& draw, parallel::Threads* threads);
 

@@ -12,8 +12,8 @@
 
 namespace rastrum {
 
-/// Its place and its axes in the terrain's world, not its lens. It looks level, because a horizon
-/// off the middle is a shear of the picture.
+/// Its place and axes in the terrain's world, without its lens. It looks level: a horizon off the
+/// middle is a shear of the picture.
 [[nodiscard]] inline Camera terrain_camera(const terrain::TerrainCamera& of) {
   const auto [sin, cos] = elementary::sin_cos(of.angle_rad);
   const auto [roll_sin, roll_cos] = elementary::sin_cos(of.roll_rad);
@@ -24,7 +24,7 @@ namespace rastrum {
   return camera;
 }
 
-/// The lens, as a matrix from the terrain's world to clip space.
+/// From the terrain's world to clip space.
 [[nodiscard]] inline Camera terrain_lens(const terrain::TerrainOptions& options,
                                          const terrain::TerrainCamera& of) {
   Camera camera;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Draws over a picture of a terrain: axes and a box in its world, a bar of its heights, words.
+// Draws over a picture of a terrain: axes and a box in its world, a bar of its heights, text.
 #include <rastrum/on_terrain.hpp>
 
 #include <algorithm>
@@ -83,7 +83,7 @@ void draw_ground_annotations(const Annotations& a, const terrain::Terrain& groun
                              const terrain::TerrainTargets& picture) {
   const FloatScope floats;
   check_ground_annotations(a, numbers);
-  // Readable on sky and on ground: light letters with a dark rim.
+  // Light letters with a dark rim are readable on sky and on ground.
   const overlay::Look look = look_of(a, {});
   const overlay::Canvas canvas{.color8 = picture.color8};
   if (a.bounds) draw_terrain_bounds(ground, numbers.cells_a_unit, options, camera, picture, look);

@@ -30,7 +30,6 @@ void check_around(std::span<const Light> lights, const ToneMapping& tone) {
     reject("the lights have no environment that could be seen behind the ground");
 }
 
-/// The view directions of the pixels of a terrain's picture.
 class TerrainRays {
  public:
   TerrainRays(const terrain::TerrainOptions& options, const terrain::TerrainCamera& camera) {
@@ -59,7 +58,7 @@ class TerrainRays {
   }
 
  private:
-  /// The view direction at `x_px` of the upright picture.
+  /// `x_px`: in the upright picture.
   [[nodiscard]] elementary::SinCos turn(double x_px) const {
     return elementary::sin_cos(upright_->camera.angle_rad -
                                (x_px / upright_->options.width - 0.5) * upright_->options.fov_rad);
@@ -69,7 +68,7 @@ class TerrainRays {
   std::optional<terrain::Upright> upright_;
   std::optional<terrain::Roll> roll_;
   double scale_px_ = 1;
-  std::vector<elementary::SinCos> columns_;  ///< of a picture that is not rolled: a turn each
+  std::vector<elementary::SinCos> columns_;  ///< unless the picture is rolled: a turn per column
 };
 
 }  // namespace

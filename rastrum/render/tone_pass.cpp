@@ -13,7 +13,7 @@
 namespace rastrum {
 namespace {
 
-/// Above it all curves are at their end; their squares stay finite.
+/// Beyond this all curves have reached their end. Its square is finite.
 constexpr float kBrightest = 1e9F;
 
 Vec3 each(Vec3 c, float (*curve)(float)) {
@@ -28,7 +28,7 @@ float aces(float x) {
   return (x * (2.51F * x + 0.03F)) / (x * (2.43F * x + 0.59F) + 0.14F);
 }
 
-/// As the specification's sample code has it, step by step.
+/// Step by step as the specification's sample code.
 Vec3 neutral(Vec3 c) {
   constexpr float kStart = 0.8F - 0.04F, kDesaturation = 0.15F;
   const float least = std::min({c.x, c.y, c.z});
@@ -74,7 +74,7 @@ ToneCurve::ToneCurve(const ToneMapping& mapping)
 Vec3 ToneCurve::operator()(Vec3 linear) const {
   const auto exposed = [&](float x) {
     const float e = x * exposure_;
-    return e > 0 ? std::min(e, kBrightest) : 0.0F;  // of NaN 0
+    return e > 0 ? std::min(e, kBrightest) : 0.0F;  // a NaN gives 0
   };
   const Vec3 t = toned(tone_, {exposed(linear.x), exposed(linear.y), exposed(linear.z)});
   return each(t, raster::srgb_from_linear);

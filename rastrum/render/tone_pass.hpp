@@ -12,7 +12,6 @@ namespace rastrum {
 /// Throws Error{invalid_argument} for an unknown curve and for an exposure out of range.
 void check_tone(const ToneMapping& mapping);
 
-/// Maps linear light to display values.
 class ToneCurve {
  public:
   explicit ToneCurve(const ToneMapping& mapping);
@@ -24,18 +23,18 @@ class ToneCurve {
   float exposure_;
 };
 
-/// Holds the images of one frame that the pass reads and its caller did not ask for.
+/// Holds the images of one frame that the pass needs and the caller did not ask for.
 class TonePass {
  public:
-  /// Whether the frame is tone mapped; `taken`: what its shader became. Throws
-  /// Error{invalid_argument} for another shader than `material`, and for a pass over a picture.
+  /// Whether the frame is tone mapped. `taken`: its resolved shader. Throws Error{invalid_argument}
+  /// unless that is `material`, Error{unsupported} for a pass over a picture.
   [[nodiscard]] static bool wanted(const FrameOptions& frame, const Targets& targets, Shader taken,
                                    const Pass& pass = {});
 
-  /// `asked` with linear light and depth in the place of colours.
+  /// `asked` with linear light and depth instead of colours.
   [[nodiscard]] Targets targets(const FrameOptions& frame, const Targets& asked);
-  /// Fills the colours of `asked` from the targets that targets() gave. Where nothing is seen, they
-  /// are the unchanged background.
+  /// Fills the colours of `asked` from the contents of targets(). Where nothing is seen, the
+  /// background stays.
   void draw(const FrameOptions& frame, const Targets& asked, parallel::Threads* threads) const;
 
  private:

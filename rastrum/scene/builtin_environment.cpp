@@ -37,7 +37,6 @@ Vec3 sky_at(const Vec3d& d) {
   return mixed_light(air + kGlow * static_cast<float>(g32), kSun, edge);
 }
 
-/// A lamp on a wall, a rectangle in the plane's two coordinates with soft edges.
 struct WallLamp {
   double u0, u1, v0, v1;
   Vec3 light;
@@ -49,7 +48,7 @@ struct WallLamp {
   }
 };
 
-/// A box of 8 × 5 × 8 about the eye.
+/// A room of 8 × 5 × 8 around the eye.
 Vec3 room_at(const Vec3d& d) {
   constexpr double kAside = 4, kAbove = 3, kBelow = 2;
   constexpr WallLamp kCeiling[] = {{-3, -0.6, -2.6, 0.4, {5.4F, 5.2F, 4.8F}},

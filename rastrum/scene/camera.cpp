@@ -66,17 +66,17 @@ Mat4d rigid(Vec3d right, Vec3d up, Vec3d back, Vec3d eye) {
   return v;
 }
 
-/// World to camera space by the rows of a matrix to clip space.
+/// World to camera space, by the rows of a matrix to clip space.
 Mat4d axes_of(const Mat4d& m) {
   constexpr const char* kSingular = "camera: its matrix is singular";
   const Vec3d x = row_of(m, 0), y = row_of(m, 1), z = row_of(m, 2), w = row_of(m, 3);
   const bool perspective = dot(w, w) > 0;
-  // A parallel projection looks along the direction in which x and y stay the same. Depth is larger
-  // towards the eye.
+  // A parallel projection looks along the direction in which x and y stay. Depth grows towards the
+  // eye.
   Vec3d back = direction(perspective ? -w : cross(x, y), kSingular);
   if (!perspective && dot(back, z) < 0) back = -back;
   const Vec3d up = direction(y - back * dot(y, back), kSingular);
-  // The eye is where x, y and w are 0; for a parallel projection, the middle of the near plane (z =
+  // The eye is where x, y and w are 0, or in the middle of a parallel projection's near plane (z =
   // w).
   const Vec3d last = perspective ? w : z;
   const double known[3] = {-m.m[0][3], -m.m[1][3],

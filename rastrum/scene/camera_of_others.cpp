@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cameras from what others describe them by. A lens is composed with its pose in float64 and stands
-// in Camera::matrix; what is asked about it later (axes, distances) is read off that matrix again.
+// Cameras from other programs' descriptions: lens and pose, composed in float64 in Camera::matrix.
+// Axes and distances are later read off it.
 #include <rastrum/camera.hpp>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Colour maps by name, and lists of colours; see color_map.hpp.
+// Colour maps by name, and lists of colours (color_map.hpp).
 #include <algorithm>
 #include <string>
 
@@ -20,7 +20,7 @@ struct PublishedMap {
 
 #include <rastrum/scene/color_maps/tables.inc>
 
-/// RRGGBB or RRGGBBAA; none where it is something else.
+/// RRGGBB or RRGGBBAA; else none.
 std::optional<Vec4> parsed(std::string_view digits) {
   if (digits.size() != 6 && digits.size() != 8) return std::nullopt;
   const std::optional<Rgba8> color = color_of(std::string("#").append(digits));

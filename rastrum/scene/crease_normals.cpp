@@ -28,7 +28,7 @@ namespace {
 
 struct Face {
   Vec3d normal;
-  double squared = 0;  ///< the normal's length; 0: takes no part
+  double squared = 0;  ///< the normal's length, squared; 0: takes no part
 };
 inline Face face_of(const ArrayView<Vec3>& positions, const std::array<std::uint32_t, 3>& v) {
   const Vec3d a = positions.wide(v[0]);
@@ -38,16 +38,16 @@ inline Face face_of(const ArrayView<Vec3>& positions, const std::array<std::uint
   return f;
 }
 
-/// The faces around one point, and their groups; its memory is kept from point to point.
+/// The faces around a point, and their groups. Keeps its memory from point to point.
 class Fan {
  public:
   void clear() { faces_.clear(); }
-  /// A face whose corner at the point comes after `before` and is followed by `after`.
+  /// `before` and `after`: the points next to this one along the face.
   void add(const Face& face, std::uint32_t after, std::uint32_t before) {
     faces_.push_back({face, after, before, 0});
   }
 
-  /// Makes groups of faces that share edges whose angle has at least this cosine.
+  /// Groups faces that share edges whose angle has at least this cosine.
   void join(double cosine) {
     if (goes_round(cosine)) {
       for (Part& part : faces_) part.parent = 0;
@@ -68,8 +68,8 @@ class Fan {
     }
   }
 
-  /// Appends the normals of the groups to `normals`, in the order of their first faces, and calls
-  /// put(i, place there) for each face.
+  /// Appends the groups' normals, in the order of their first faces, and calls put(i, place in
+  /// `normals`) for each face.
   template <class Put>
   void sum(std::vector<Vec3>& normals, const Put& put) {
     sums_.resize(faces_.size());
@@ -107,7 +107,7 @@ class Fan {
 
   static bool is_smooth(const Part& a, const Part& b, double cosine) {
     const double dotted = dot(a.face.normal, b.face.normal);
-    // Mostly the answer is clear without the roots, whose rounding errors are some 10^-15 of them.
+    // Mostly the answer needs no roots, whose rounding errors are some 10^-15 of them.
     constexpr double kClearly = 1 + 1e-12;
     const double most = cosine * cosine * a.face.squared * b.face.squared;
     if (cosine > 0 && most > kFarFromZero && dotted > 0) {
@@ -117,10 +117,10 @@ class Fan {
     return dotted >= cosine * (std::sqrt(a.face.squared) * std::sqrt(b.face.squared));
   }
 
-  /// Whether each face is followed by another, smoothly, until all have been passed, as inside of a
-  /// smooth surface. Then join has a single group, without its sort.
+  /// Whether smooth edges lead all the way round, as inside a smooth surface. Then join needs no
+  /// sort for its only group.
   [[nodiscard]] bool goes_round(double cosine) const {
-    constexpr std::size_t kMost = 32;  // each is looked for among all
+    constexpr std::size_t kMost = 32;  // each is searched among all
     const std::size_t n = faces_.size();
     if (n > kMost) return false;
     std::size_t at = 0;
@@ -133,7 +133,6 @@ class Fan {
     }
     return false;
   }
-  /// The first face of the group of `face`.
   std::uint32_t first_of(std::uint32_t face) {
     while (faces_[face].parent != face)
       face = faces_[face].parent = faces_[faces_[face].parent].parent;
@@ -145,7 +144,7 @@ class Fan {
   std::vector<Sum> sums_;
 };
 
-/// `Number` counts corners; it is small because fresh pages are much of the cost.
+/// `Number` counts corners. It is small because fresh pages are much of the cost.
 template <class Number, class Exec>
 Attribute<Vec3> crease_normals_on(Exec& exec, const ArrayView<Vec3>& positions,
                                   std::span<const std::uint32_t> indices, std::size_t triangles,
@@ -158,7 +157,7 @@ Attribute<Vec3> crease_normals_on(Exec& exec, const ArrayView<Vec3>& positions,
   const JoinedPoints points =
       weld(exec, positions.size(), [&](std::uint32_t v) { return positions.wide(v); });
 
-  // Corners of triangles without an area take no part; they get this number, which no point has.
+  // Corners of triangles without area take no part. No point has this number.
   const auto none = static_cast<std::uint32_t>(points.count);
   auto point_of = parallel::make_buffer<std::uint32_t>(exec, 3 * triangles);
   parallel::for_each_block(exec, triangles, [&](std::size_t, std::size_t first, std::size_t end) {
@@ -190,8 +189,8 @@ Attribute<Vec3> crease_normals_on(Exec& exec, const ArrayView<Vec3>& positions,
   auto corners = parallel::make_buffer<Number>(exec, begin[points.count]);
   each_of_share([&](std::size_t p, Number corner) { corners[next[p]++] = corner; });
 
-  // In each run of points groups count from 0; where a run's own begin is known when all are done.
-  // So the result does not depend on the number of threads.
+  // Groups count from 0 in each run of points, whose begin is known when all are done. So the
+  // result does not depend on the number of threads.
   Attribute<Vec3> normals;
   normals.indices.resize(3 * triangles);
   std::vector<std::vector<Vec3>> values(parallel::block_count(points.count));
@@ -212,7 +211,7 @@ Attribute<Vec3> crease_normals_on(Exec& exec, const ArrayView<Vec3>& positions,
                                });
                              }
                            });
-  std::vector<std::size_t> first(values.size() + 1, 1);  // 0: of corners that have no group
+  std::vector<std::size_t> first(values.size() + 1, 1);  // 0: corners without a group
   for (std::size_t run = 0; run < values.size(); ++run)
     first[run + 1] = first[run] + values[run].size();
   normals.values.resize(first.back());

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Turns an equirectangular picture into the data that shading reads. The light that matt surfaces
-// gather becomes nine numbers a channel (Ramamoorthi and Hanrahan 2001). The light that surfaces of
-// eight roughnesses mirror is filtered by their distribution of facets as if seen from straight
-// above (Karis 2013). Sums go from the first row to the last, and each row has its own, so threads
-// change no bit.
+// gather becomes nine numbers per channel (Ramamoorthi and Hanrahan 2001). The light that surfaces
+// of eight roughnesses mirror is filtered by their distribution of facets, as if seen from straight
+// above (Karis 2013). Rows have their own sums, added in order, so threads change no bit.
 #include <rastrum/environment.hpp>
 
 #include <algorithm>
@@ -26,7 +25,7 @@ using environment_detail::Data;
 using environment_detail::Gathered;
 
 constexpr double kPi = std::numbers::pi;
-constexpr int kSharpest = 2048;  ///< texels of level 0 to a side, at most
+constexpr int kSharpest = 2048;  ///< texels of level 0 per side, at most
 /// Sizes of the levels: a lobe of level 1 is 2° wide, a texel of 128 about 1°. Smooth levels need
 /// 64 because the map has folds.
 constexpr int kSizes[EnvironmentMap::kLevels] = {0, 128, 128, 64, 64, 64, 64, 64};
@@ -50,7 +49,6 @@ void check_picture(ImageView<const Vec3> picture) {
     }
 }
 
-/// Sines and cosines of the picture's columns and rows.
 struct Directions {
   std::vector<elementary::SinCos> column, row;
   std::vector<double> solid_angle;  ///< of a row's pixels
@@ -140,7 +138,7 @@ Vec3 look_up(ImageView<const Vec3> picture, const Vec3d& d) {
          (picture(x0, y1) * (1 - fx) + picture(x1, y1) * fx) * fy;
 }
 
-/// The direction of a place on the map, OctahedralPlace's inverse, of unit length.
+/// The unit direction at a place of the map: OctahedralPlace's inverse.
 Vec3d direction_at(double u, double v) {
   double a = 2 * u - 1, b = 2 * v - 1;
   const double y = 1 - std::abs(a) - std::abs(b);
@@ -164,7 +162,7 @@ class Texels {
     return texels_[static_cast<std::size_t>(y + 1) * static_cast<std::size_t>(size_ + 2) +
                    static_cast<std::size_t>(x + 1)];
   }
-  /// Fills the border: across an edge the map goes on at the other end of the same edge.
+  /// Fills the border: beyond an edge the map continues at that edge's other end.
   void close() {
     const int last = size_ - 1;
     for (int i = 0; i < size_; ++i) {
@@ -187,7 +185,7 @@ class Texels {
 
 std::vector<Vec4> mirrored(parallel::Threads& exec, ImageView<const Vec3> picture, int size) {
   Texels level(size);
-  // As many looks a texel as catch the smallest lamp in the picture.
+  // Enough look-ups per texel to catch the smallest lamp in the picture.
   const int looks = (picture.height + size - 1) / size;
   const double step = 1.0 / (static_cast<double>(size) * looks);
   const float share = 1 / static_cast<float>(looks * looks);
@@ -207,7 +205,7 @@ std::vector<Vec4> mirrored(parallel::Threads& exec, ImageView<const Vec3> pictur
   return level.take();
 }
 
-/// The picture as a few patches: where they are, and their light times their solid angle.
+/// A patch of the picture, and its light times its solid angle.
 struct Patch {
   Vec3 direction;
   Vec3 light;
@@ -242,8 +240,8 @@ std::vector<Patch> patches_of(ImageView<const Vec3> picture, const Directions& d
   return patches;
 }
 
-/// The light that a surface of this roughness mirrors, for each direction of its normal, as if seen
-/// from there: the picture's light by how many facets turn it that way, times n·l.
+/// The light that a surface of this roughness mirrors, by its normal, seen from there: the
+/// picture's light times n·l, weighted by the share of facets that reflect it.
 std::vector<Vec4> blurred(parallel::Threads& exec, const std::vector<Patch>& patches, int size,
                           double roughness) {
   Texels level(size);

@@ -11,8 +11,8 @@
 
 namespace rastrum {
 
-/// A direction's place on the octahedron's map, in [0, 1]²: no function but |·| and a division, so
-/// the same bits everywhere. +y is in the middle, −y in the corners.
+/// A direction's place on the octahedral map, in [0, 1]², by |·| and a division, so with the same
+/// bits everywhere. +y is in the middle, −y in the corners.
 struct OctahedralPlace {
   float u, v;
 
@@ -30,13 +30,12 @@ struct OctahedralPlace {
   }
 };
 
-/// Radiance by direction and roughness.
 struct EnvironmentMap {
   /// Level k has the light that a surface of roughness k / (kLevels − 1) mirrors.
   static constexpr int kLevels = 8;
   struct Level {
-    /// (size + 2)² texels, row after row, RGB and an unused float. A border of one texel repeats
-    /// the texels across the edge, so that no look-up has to test for edges.
+    /// (size + 2)² texels by rows, RGB and an unused float. A border of one texel repeats those
+    /// across the edge, so that look-ups need no test.
     const Vec4* texels = nullptr;
     int size = 0;
 

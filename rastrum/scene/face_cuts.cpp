@@ -14,12 +14,11 @@ namespace {
 
 constexpr std::uint32_t kNobody = ~std::uint32_t{0};
 
-/// Triangles of a fan may turn back by this sum of sines, because float32 corners are not quite
+/// How far (a sum of sines) a fan's triangles may turn back, because float32 corners are not quite
 /// collinear.
 constexpr double kStraight = 1e-6;
 
-/// The sum of the fan's cross products. It is the same for the fan of any corner, and twice the
-/// face's area long.
+/// The sum of the fan's cross products, the same for any corner's fan: twice the face's area long.
 Vec3d newell_normal(std::span<const Vec3d> corner) {
   Vec3d sum;
   for (std::size_t k = 2; k < corner.size(); ++k)
@@ -35,7 +34,7 @@ double turned_back(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& 
   return -along / std::sqrt(dot(u, u) * dot(v, v) * dot(normal, normal));
 }
 
-/// Whether the face may be cut into its fan; always, if its normal is zero or not finite.
+/// Whether the face may be cut into its fan. Always, if its normal is zero or not finite.
 bool is_fan(std::span<const Vec3d> corner, const Vec3d& normal) {
   double back = 0;
   for (std::size_t k = 2; k < corner.size(); ++k)
@@ -43,7 +42,7 @@ bool is_fan(std::span<const Vec3d> corner, const Vec3d& normal) {
   return !(back > kStraight);
 }
 
-/// Adds a triangle, turned so that its first corner is the least.
+/// Rotates a triangle to begin with its least corner.
 void add_ascending(std::vector<std::uint32_t>& triangles, std::array<std::uint32_t, 3> corner) {
   std::rotate(corner.begin(), std::min_element(corner.begin(), corner.end()), corner.end());
   triangles.insert(triangles.end(), corner.begin(), corner.end());
@@ -102,7 +101,7 @@ std::size_t FaceCutter::row(double y) const {
   return std::min(rows_ - 1, static_cast<std::size_t>((y - y0_) * per_unit_y_));
 }
 
-/// Makes a grid of about as many cells as inward corners, about square.
+/// Makes a grid of about square cells, about as many as inward corners.
 void FaceCutter::make_grid() {
   const auto [left, right] = std::minmax_element(x_.begin(), x_.end());
   const auto [bottom, top] = std::minmax_element(y_.begin(), y_.end());
@@ -135,8 +134,7 @@ void FaceCutter::set_inward(std::uint32_t corner) {
   first = corner;
 }
 
-/// Whether `corner` lies in the ear (a, b, c), or on its border in a way that forbids to cut it
-/// off.
+/// Whether `corner` lies in the ear (a, b, c), or on its border so that it forbids the cut.
 bool FaceCutter::lies_in(std::uint32_t corner, std::uint32_t a, std::uint32_t b,
                          std::uint32_t c) const {
   if (corner == a || corner == b || corner == c) return false;
@@ -147,13 +145,13 @@ bool FaceCutter::lies_in(std::uint32_t corner, std::uint32_t a, std::uint32_t b,
   // Another corner at the place of a or c does no harm.
   if (same(a) || same(c)) return false;
   if (!same(b)) return true;
-  // One at the place of b does if one of its sides goes into the ear.
+  // One at b does harm if one of its sides goes into the ear.
   const auto goes_in = [&](std::uint32_t to) { return area(a, b, to) > 0 && area(b, c, to) > 0; };
   return goes_in(before_[corner]) || goes_in(after_[corner]);
 }
 
-/// The next cell of a row, from `cell` on, that may contain a corner. An empty cell stays empty,
-/// because inward corners become outward ones and not the reverse, unless the face crosses itself.
+/// The next cell of a row, from `cell` on, that may contain a corner. An empty cell stays empty: no
+/// corner becomes inward, unless the face crosses itself.
 std::uint32_t* FaceCutter::filled(std::uint32_t* cell) {
   std::uint32_t* const skip = &to_filled_[static_cast<std::size_t>(cell - cell_.data())];
   std::uint32_t* at = cell;
@@ -162,7 +160,6 @@ std::uint32_t* FaceCutter::filled(std::uint32_t* cell) {
     at += *step;
     step += *step;
   }
-  // Shortens the way for the next search.
   for (std::uint32_t* s = skip; s != step;) {
     const std::uint32_t one = *s;
     *s = static_cast<std::uint32_t>(step - s);
@@ -171,8 +168,8 @@ std::uint32_t* FaceCutter::filled(std::uint32_t* cell) {
   return at;
 }
 
-/// The first and the last column in which a triangle meets a row, and one more on either side
-/// because of rounding.
+/// The first and last column where a triangle meets a row, and one more on either side for
+/// rounding.
 std::pair<std::size_t, std::size_t> FaceCutter::columns_in(
     std::size_t row_number, const std::array<std::uint32_t, 3>& triangle) const {
   if (columns_ == 1) return {0, 0};
@@ -193,7 +190,7 @@ std::pair<std::size_t, std::size_t> FaceCutter::columns_in(
   return {first == 0 ? 0 : first - 1, std::min(columns_ - 1, last + 1)};
 }
 
-/// An inward corner that lies in the ear of `b`; kNobody: none, so that it may be cut off.
+/// An inward corner in the ear of `b`; kNobody: none, so it may be cut off.
 std::uint32_t FaceCutter::what_lies_in(std::uint32_t b) {
   const std::uint32_t a = before_[b], c = after_[b];
   const auto [bottom, top] = std::minmax({y_[a], y_[b], y_[c]});
@@ -204,7 +201,7 @@ std::uint32_t FaceCutter::what_lies_in(std::uint32_t b) {
     for (std::uint32_t* cell = filled(begin + left); cell <= last; cell = filled(cell)) {
       for (std::uint32_t* at = cell; *at != kNobody;) {
         const std::uint32_t corner = *at;
-        if (inward_[corner] == 0) {  // it is no longer inward
+        if (inward_[corner] == 0) {  // no longer inward
           in_grid_[corner] = 0;
           *at = next_in_cell_[corner];
           continue;
@@ -221,8 +218,8 @@ std::uint32_t FaceCutter::what_lies_in(std::uint32_t b) {
   return kNobody;
 }
 
-/// Makes a triangle of a corner and its neighbours, and puts these behind all other corners in the
-/// queue: so corners take turns, and triangles become less thin.
+/// Makes a triangle of a corner and its neighbours, and queues these behind all others, so that
+/// corners take turns and triangles become less thin.
 void FaceCutter::cut_off(std::uint32_t b) {
   const std::uint32_t a = before_[b], c = after_[b];
   add_ascending(triangles_, {a, b, c});
@@ -290,7 +287,7 @@ void FaceCutter::cut_ears(std::size_t n) {
         continue;
       }
     } else {
-      // There are no ears: the remaining corners are collinear, or the face crosses itself.
+      // No ears are left: the remaining corners are collinear, or the face crosses itself.
       corner = next_of(straight_, straight);
       for (std::size_t k = 0; corner == kNobody && k < left; ++k, some = after_[some])
         if (inward_[some] == 0) corner = some;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Faces of more than three corners as triangles, for readers and for arrays. A face has n − 2
-// triangles, which turn as the face does. The fan of its first corner is taken if none of its
-// triangles turns against the face, seen along its Newell normal; a convex face always passes.
-// Other faces are cut ear by ear (Meisters, "Polygons have ears", 1975) in the plane across that
-// normal. Deviations: a corner whose ear contains another corner waits until that one is gone, so
-// it is not tried in vain; and a grid finds the inward corners in an ear (Held, FIST, 2001).
+// Triangulates faces of more than three corners, for readers and for arrays. A face has n − 2
+// triangles, which turn as it does. The first corner's fan is taken if none of its triangles turns
+// against the face, seen along its Newell normal, as in every convex face. Others are cut ear by
+// ear (Meisters, "Polygons have ears", 1975) in the plane across that normal. Deviations: a corner
+// whose ear contains another waits until that is gone, and a grid finds the inward corners in an
+// ear (Held, FIST, 2001).
 #pragma once
 
 #include <array>
@@ -24,21 +24,19 @@ namespace parallel {
 class Threads;
 }
 
-/// Whether a quad is cut from its second corner to its fourth, because the fan of the first corner
-/// fails and this one does not.
+/// Whether a quad is cut from its second corner to its fourth, because only this fan passes.
 [[nodiscard]] bool is_cut_across(const Vec3d (&corner)[4]);
 
-/// Cuts faces, one after the other; keeps its scratch. Corners may repeat or be collinear. A face
-/// that crosses itself, or has no area, gets n − 2 triangles that may overlap. In float64, so the
-/// same on every machine. About O(corners); O(corners²) if inward corners of a large face crowd in
-/// one place.
+/// Cuts faces and keeps its scratch. Corners may repeat or be collinear. A face that crosses itself
+/// or has no area gets n − 2 triangles that may overlap. Float64 makes all machines agree. About
+/// O(corners); O(corners²) if inward corners of a large face crowd in one place.
 class FaceCutter {
  public:
-  /// Bytes of scratch for each corner of the largest face, about.
+  /// About the bytes of scratch per corner of the largest face.
   static constexpr std::size_t kScratch = 112;
 
-  /// Three places in `corners` a triangle, ascending; empty: the fan of the first corner. Valid
-  /// until the next call.
+  /// Three places in `corners` per triangle, ascending; empty: the first corner's fan. Valid until
+  /// the next call.
   [[nodiscard]] std::span<const std::uint32_t> cut(std::span<const Vec3d> corners);
 
   /// Calls f(i, j, k) for each triangle of a face of n corners, whose position is at(corner).
@@ -60,7 +58,6 @@ class FaceCutter {
   struct Entry {
     std::uint32_t corner, stamp;
   };
-  /// A corner that waits until another one is cut off.
   struct Waiting {
     Entry entry;
     std::uint32_t next;
@@ -85,13 +82,13 @@ class FaceCutter {
   std::vector<std::uint32_t> triangles_;
   std::vector<double> x_, y_;  ///< in the plane across the normal, which points to the viewer
   std::vector<std::uint32_t> before_, after_;
-  std::vector<std::uint32_t> stamp_;  ///< an entry with an older stamp is no longer valid
-  std::vector<std::uint8_t> inward_;  ///< or straight; 0 once it is cut off
+  std::vector<std::uint32_t> stamp_;  ///< entries with an older stamp are void
+  std::vector<std::uint8_t> inward_;  ///< or straight; 0 once cut off
   std::vector<std::uint8_t> in_grid_;
-  /// cell_: the first inward corner of each cell; each row has one more cell, at which a search
-  /// ends. to_filled_: for an empty cell, a distance to a later one.
+  /// cell_: the first inward corner of each cell; an extra cell per row ends searches. to_filled_:
+  /// for an empty cell, a distance to a later one.
   std::vector<std::uint32_t> cell_, next_in_cell_, to_filled_;
-  std::vector<std::uint32_t> first_waiting_;  ///< the first of those that wait for each corner
+  std::vector<std::uint32_t> first_waiting_;  ///< by corner: the first that waits for it
   std::vector<Waiting> waiting_;
   std::vector<Entry> queue_, straight_;
   std::size_t columns_ = 1, rows_ = 1;
@@ -102,22 +99,22 @@ class FaceCutter {
 [[nodiscard]] std::span<const Vec3d> corners_of(const MeshView& mesh, std::size_t begin,
                                                 std::size_t end, std::vector<Vec3d>& to);
 
-/// The faces of a mesh of polygons that are no fans, so that a frame cuts each once.
+/// The faces of a polygon mesh that are no fans; a frame cuts each once.
 class FaceCuts {
  public:
   /// Requires valid faces; a face with an index out of range is a fan. `threads`: null: one thread.
   explicit FaceCuts(const MeshView& mesh, parallel::Threads* threads = nullptr);
 
   static constexpr std::size_t kNone = ~std::size_t{0};
-  /// The number here of the first such face that is not before `face`.
+  /// The number here of the first such face at or after `face`.
   [[nodiscard]] std::size_t lower_bound(std::size_t face) const;
   /// The number of `face` here; kNone: it is a fan.
   [[nodiscard]] std::size_t find(std::size_t face) const;
-  /// The mesh's number of face `i` here; kNone behind the last.
+  /// The mesh's number of face `i` here; kNone after the last.
   [[nodiscard]] std::size_t face(std::size_t i) const {
     return i < faces_.size() ? faces_[i] : kNone;
   }
-  /// The triangles of face `i` here, as FaceCutter::cut returns them.
+  /// As FaceCutter::cut returns them.
   [[nodiscard]] const std::uint32_t* triangles(std::size_t i) const {
     return triangles_.data() + first_[i];
   }
@@ -127,8 +124,8 @@ class FaceCuts {
   std::vector<std::uint32_t> triangles_;
 };
 
-/// `mesh` with the cuts of its faces, if it has polygons and no cuts yet, for reading many
-/// triangles. Keeps the cuts in `cuts`.
+/// `mesh` with its polygons cut, unless it has cuts, for reading many triangles. Keeps the cuts in
+/// `cuts`.
 [[nodiscard]] MeshView with_cuts(const MeshView& mesh, std::list<FaceCuts>& cuts,
                                  parallel::Threads* threads = nullptr);
 

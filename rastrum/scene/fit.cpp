@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The scene is seen in the camera's axes, relative to the centre of its box: x to the right, y up,
-// z back towards the eye. A frustum's side of slope t first touches the vertex with the largest x +
-// t z: its eye must have x_e + t z_e at least as large. Two such sides leave a wedge of eyes, and
-// its tip is the nearest of them (as in the "zoom to fit" of viewers; Blender's Frame Selected).
+// Works in camera axes around the centre of the scene's box: x to the right, y up, z back towards
+// the eye. A frustum's side of slope t first touches the vertex with the largest x + t z, so its
+// eye needs x_e + t z_e at least as large. Two such sides leave a wedge of eyes, whose tip is the
+// nearest (as in viewers' "zoom to fit"; Blender's Frame Selected).
 #include <rastrum/fit.hpp>
 
 #include <algorithm>
@@ -22,11 +22,11 @@ namespace rastrum {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// The least distance of the eye from the nearest vertex, in r.
+/// The least distance from the eye to the nearest vertex, in r.
 constexpr double kNearest = 1 / 20.0;
 constexpr double kNearPlane = 0.99, kPlaneMargin = 0.01;
 
-/// A point of the scene in one plane of the camera: across the view and back from the centre.
+/// A point in one plane of the camera: across the view and back from the centre.
 struct Flat {
   double across = 0, back = 0;
 };
@@ -40,7 +40,7 @@ struct Touched {
     const Flat p{across, back};
     merge({p, p, across + t * back, -across + t * back});
   }
-  /// Among equal ones the first stays, as in add.
+  /// Among equals the first stays, as in add.
   void merge(const Touched& later) {
     if (later.most > most) {
       most = later.most;
@@ -52,7 +52,7 @@ struct Touched {
     }
   }
   [[nodiscard]] bool empty() const { return most == -kInfinity; }
-  /// Joins the points of all ranks. Among equal ones the first stays, as in add.
+  /// Joins the points of all ranks; among equals the first stays.
   void gather(FitRanks* ranks) {
     if (ranks == nullptr) return;
     const double own[] = {most, high.across, high.back, least, low.across, low.back};
@@ -61,12 +61,12 @@ struct Touched {
     for (std::size_t r = 0; r < all.size(); r += 6)
       merge({{all[r + 1], all[r + 2]}, {all[r + 4], all[r + 5]}, all[r], all[r + 3]});
   }
-  /// Where the wedge between the planes has its tip.
+  /// The tip of the wedge between the planes.
   [[nodiscard]] double tip_across() const { return (most - least) / 2; }
   [[nodiscard]] double tip_back(double t) const { return (most + least) / (2 * t); }
 };
 
-/// The scene in the camera's axes, still or swept about an axis through the origin.
+/// The scene in camera axes, still or swept about an axis through the origin.
 class Outline {
  public:
   Outline(const VerticesInUse& vertices, const Mat4d& to_camera, Vec3d centre, bool turns, Vec3d up,
@@ -74,7 +74,7 @@ class Outline {
       : vertices_(vertices), to_camera_(to_camera), centre_(centre), turns_(turns), ranks_(ranks) {
     const Vec3d a = turned(up);
     const double l = length(a);
-    axis_y_ = a.y / l;  // its x is 0: up is what makes the camera's x
+    axis_y_ = a.y / l;  // its x is 0, because up defines the camera's x
     axis_z_ = a.z / l;
   }
 
@@ -86,12 +86,11 @@ class Outline {
             centre_.y + (m[0][1] * p.x + m[1][1] * p.y + m[2][1] * p.z),
             centre_.z + (m[0][2] * p.x + m[1][2] * p.y + m[2][2] * p.z)};
   }
-  /// How far back from the centre a point of the world lies.
   [[nodiscard]] double back_of(Vec3d world) const { return turned(world - centre_).z; }
 
   [[nodiscard]] Touched horizontal(double t) const { return touched<0>(t); }
   [[nodiscard]] Touched vertical(double t) const { return touched<1>(t); }
-  /// The nearest and the farthest, back from the centre; 0 if there are no vertices.
+  /// The nearest and the farthest, back from the centre; 0 without vertices.
   struct Depths {
     double nearest = -kInfinity, farthest = kInfinity;
     void add(double back) { merge({back, back}); }
@@ -132,7 +131,7 @@ class Outline {
     return middle + half;
   }
 
-  /// The points that two planes touch, in the form that VerticesInUse::reduce needs.
+  /// The points that two planes touch, for VerticesInUse::reduce.
   template <int axis>
   struct TouchedVertices {
     const Outline* outline;
@@ -192,7 +191,7 @@ class Outline {
     }
   };
 
-  /// The circle that a vertex goes round: its place along the axis of turning, and its radius.
+  /// A vertex's circle: its place along the axis of turning, and its radius.
   struct Circle {
     double along, radius;
   };
@@ -210,9 +209,9 @@ class Outline {
   double axis_y_ = 1, axis_z_ = 0;
 };
 
-/// Where the eye, `back` from the centre, has equal margins on both sides. This is the tip of the
-/// wedge with the least slope t whose tip is no farther back. Newton's method finds t from 0; from
-/// that side it never goes too far, and it ends once it has the two vertices that count.
+/// Where the eye, `back` from the centre, has equal margins on both sides: the tip of the wedge
+/// with the least slope t whose tip is no farther back. Newton's method from t = 0 never goes too
+/// far, and ends once it has the two vertices that count.
 template <class Touch>
 double middle(const Touch& touch, double back, double t_picture, const Touched& in_picture) {
   constexpr int kMost = 16;
@@ -225,13 +224,12 @@ double middle(const Touch& touch, double back, double t_picture, const Touched& 
     t = next;
     touched = touch(t);
   }
-  // The result must be inside of the picture.
   const double lower = in_picture.most - t_picture * back;
   const double upper = t_picture * back - in_picture.least;
   return lower <= upper ? std::clamp(touched.tip_across(), lower, upper) : in_picture.tip_across();
 }
 
-/// The box, or that of the origin where it is of nothing.
+/// The box, or that of the origin if it is empty.
 Box3d or_origin(const Box3d& box) {
   return box.empty() ? Box3d{{}, {}} : box;
 }
@@ -286,8 +284,7 @@ Camera fit_picture(const SceneView& scene, const Camera& view, int width, int he
   if (turns) eye.x = 0;  // the same, but for rounding
 
   camera.eye = outline.to_world(eye);
-  // Where the view axis meets the axis of turning, which is as far as the centre where they stand
-  // at right angles.
+  // Where the view axis meets the axis of turning: as far as the centre if they are perpendicular.
   const double target_back = turns ? eye.y * outline.axis_z() / outline.axis_y() : 0;
   camera.target = outline.to_world({eye.x, eye.y, target_back});
   const double back = outline.back_of(camera.eye);

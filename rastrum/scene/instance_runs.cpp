@@ -10,7 +10,7 @@
 namespace rastrum {
 namespace {
 
-/// Vertices and triangles of a run have numbers of 32 bits.
+/// 32 bits number a run's vertices and triangles.
 constexpr std::size_t kMostOfRun = std::size_t{1} << 31;
 
 /// Instances that are compared at once: some 100 µs.
@@ -29,7 +29,7 @@ bool has_scalars(const InstanceView& i) {
   return i.scalar || !i.mesh()->scalars.empty();
 }
 
-/// An instance with NaN is not like any other.
+/// An instance with NaN is like no other.
 bool are_alike(const InstanceView& a, const InstanceView& b) {
   return a.mesh() != nullptr && b.mesh() != nullptr && a.opacity == b.opacity &&
          a.material == b.material && a.visible == b.visible && a.winding == b.winding &&
@@ -39,7 +39,6 @@ bool are_alike(const InstanceView& a, const InstanceView& b) {
          (a.geometry == b.geometry || *a.mesh() == *b.mesh());
 }
 
-/// How many instances of a geometry make the longest run.
 std::size_t longest_run(const InstanceView& instance) {
   const MeshView& mesh = *instance.mesh();
   const std::size_t one =
@@ -78,7 +77,7 @@ InstanceRuns::InstanceRuns(const SceneView& scene, bool joins, parallel::Threads
   parallel::for_each_index(parts > 1 ? threads : nullptr, parts, compare);
   if (std::ranges::none_of(joined, [](std::uint8_t j) { return j != 0; })) return;
 
-  std::size_t end = 0;  // of the longest run that begins with the last first
+  std::size_t end = 0;  // where a run from the last first instance must end
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (joined[i] != 0 && i < end) continue;
     begin_.push_back(i);

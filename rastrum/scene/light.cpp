@@ -23,7 +23,7 @@ bool is_direction(Vec3 v) {
   return square > 0 && std::isfinite(square);
 }
 
-/// An error message for a light; null: it is valid.
+/// Null: the light is valid.
 struct Problem {
   const char* operator()(const AmbientLight&) const { return nullptr; }
   const char* operator()(const HemisphereLight& h) const {
@@ -37,7 +37,7 @@ struct Problem {
   const char* operator()(const SpotLight& s) const {
     if (const char* const problem = placed(s.position, s.range)) return problem;
     if (!is_direction(s.direction)) return "its direction must be finite and not zero";
-    // Half a turn in float32 is a little more than in float64.
+    // π / 2 in float32 is a little more than in float64.
     const bool cone = s.inner_rad >= 0 && s.inner_rad < s.outer_rad &&
                       s.outer_rad <= std::numbers::pi_v<float> / 2;
     return cone ? nullptr : "its cone must have 0 <= inner < outer <= 90 degrees";
@@ -54,8 +54,7 @@ struct Problem {
   }
 };
 
-/// Away from where VTK's kit has a lamp: `elevation` above and `azimuth` to the right of the
-/// viewer.
+/// A lamp of VTK's light kit, `elevation` above and `azimuth` to the right of the viewer.
 Light lamp(double elevation, double azimuth, float intensity, Vec3 color) {
   const SinCos up = sin_cos_degrees(elevation), across = sin_cos_degrees(azimuth);
   Light light;

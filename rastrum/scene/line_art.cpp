@@ -13,7 +13,7 @@
 namespace rastrum {
 namespace {
 
-/// Its smaller and its larger index, and the place where it stands.
+/// An edge's smaller and larger index, and its place.
 using Edge = std::pair<std::uint64_t, std::uint64_t>;
 
 void add_line(std::vector<Vec3>& lines, Vec3 from, Vec3 normal, float length) {

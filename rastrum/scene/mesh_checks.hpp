@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Checks of the arrays of meshes, points and lines. They return messages, to which callers add the
-// owner of the array.
+// Checks of arrays of meshes, points and lines. They return a message, to which callers add the
+// array's owner; empty: no problem.
 #pragma once
 
 #include <cstddef>
@@ -12,29 +12,26 @@
 
 namespace rastrum {
 
-/// A message if an array does not have `wanted` values; empty: it has.
+/// For an array that does not have `wanted` values.
 [[nodiscard]] std::string count_problem(std::size_t values, const std::string& array,
                                         std::size_t wanted, const char* elements);
 
-/// A message for more positions than have a number; empty: they have.
+/// For more positions than can be numbered.
 [[nodiscard]] std::string positions_problem(std::size_t positions);
 
-/// A message for a material's number that is out of range; empty: it is valid. In a scene without
-/// materials only number 0 is.
+/// For a material's number out of range. Without materials only 0 is valid.
 [[nodiscard]] std::string material_problem(std::uint32_t material, std::size_t materials);
 
-/// A message for bad faces or a bad number of positions or corners; empty: all are valid.
-/// O(offsets).
+/// For bad faces or a bad number of positions or corners. O(offsets).
 [[nodiscard]] std::string faces_problem(const MeshView& mesh);
 
-/// A message for bad sizes of arrays or bad offsets; empty: all are valid. Indices of positions are
-/// not checked. O(offsets).
+/// For bad sizes of arrays or bad offsets, not for indices of positions. O(offsets).
 [[nodiscard]] std::string arrays_problem(const PointsView& points);
 [[nodiscard]] std::string arrays_problem(const LinesView& lines);
 
 /// The place of the first index that is not < `size`; indices.size() if all are. O(indices).
 [[nodiscard]] std::size_t first_beyond(const IndexView& indices, std::size_t size);
-/// The same for the indices [begin, end); returns `end` if there is none.
+/// Likewise for the indices [begin, end); `end` if there is none.
 [[nodiscard]] std::size_t first_beyond(const IndexView& indices, std::size_t size,
                                        std::size_t begin, std::size_t end);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Clusters along Hilbert's curve: the triangles are sorted, stably, by where their middles lie on
-// it, and cut where a cluster is full. (The curve: Skilling, "Programming the Hilbert curve", 2004;
-// the cones: Shirman and Abi-Ezzi, "The cone of normals technique", 1993.)
+// Clusters along Hilbert's curve: triangles are sorted, stably, by their middles' place on it, and
+// cut where a cluster is full. (Curve: Skilling, "Programming the Hilbert curve", 2004; cones:
+// Shirman and Abi-Ezzi, "The cone of normals technique", 1993.)
 #include <rastrum/scene/mesh_clusters.hpp>
 
 #include <algorithm>
@@ -19,17 +19,16 @@
 namespace rastrum {
 namespace {
 
-/// How many triangles one thread cuts into clusters. The number does not depend on the threads, so
-/// that a mesh has one set of clusters.
+/// Triangles that one thread cuts into clusters, whatever the number of threads, so that a mesh has
+/// one set of clusters.
 constexpr std::size_t kChunk = std::size_t{1} << 14;
-constexpr int kCurveBits = 10;  ///< along an axis
-/// The place of triangles that are not finite: behind the whole curve.
+constexpr int kCurveBits = 10;  ///< per axis
+/// The place of triangles that are not finite: after the whole curve.
 constexpr std::uint64_t kOffCurve = std::uint64_t{1} << 3 * kCurveBits;
 constexpr int kMaterialShift = 3 * kCurveBits + 1;
-/// Triangles that are fetched before they are put into clusters.
+/// How many triangles ahead are fetched.
 constexpr std::size_t kAhead = 16;
-/// The normal of a triangle is too unsure if its least height is a smaller part of its longest
-/// edge.
+/// A normal is too unsure if the least height is a smaller part of the longest edge.
 constexpr double kThin = 1e-6;
 
 template <class F>
@@ -39,19 +38,19 @@ void for_each_part(parallel::Threads* threads, std::size_t n, std::size_t part, 
                            [&](std::size_t i) { f(i, i * part, std::min(n, (i + 1) * part)); });
 }
 
-/// Cells of 2^kCurveBits along each axis, whose places on the curve are found side by side.
+/// Cells of 2^kCurveBits per axis, whose places on the curve are found together.
 struct Cells {
   static constexpr std::size_t kCount = 64;
   std::uint32_t x[3][kCount];
   std::uint32_t place[kCount];
 
-  /// Finds the places of all cells; without branches, so that compilers vectorize it.
+  /// Without branches, so that compilers vectorize it.
   void find_places() {
     constexpr std::uint32_t kTop = 1U << (kCurveBits - 1);
     for (std::uint32_t q = kTop; q > 1; q /= 2)
       for (auto& axis : x)
         for (std::size_t i = 0; i < kCount; ++i) {
-          // Inverts the lower bits of x[0] where the bit is set, else exchanges them with its.
+          // Inverts the lower bits of x[0] where the bit is set, else swaps them with the axis's.
           const std::uint32_t set = (axis[i] & q) != 0 ? q - 1 : 0;
           const std::uint32_t other = (x[0][i] ^ axis[i]) & (set ^ (q - 1));
           x[0][i] ^= other | set;
@@ -66,7 +65,7 @@ struct Cells {
   }
 
  private:
-  /// Every third bit.
+  /// Spreads bits to every third place.
   static std::uint32_t spread(std::uint32_t v) {
     static_assert(kCurveBits <= 10);
     v = (v | v << 16) & 0x030000FFU;
@@ -76,7 +75,7 @@ struct Cells {
   }
 };
 
-/// Round outwards, so that a box in float32 holds all of the float64 one.
+/// Round outwards, so that a float32 box holds the float64 one.
 float float_below(double v) {
   const auto f = static_cast<float>(v);
   return f > v ? std::nextafter(f, -std::numeric_limits<float>::infinity()) : f;
@@ -86,7 +85,6 @@ float float_above(double v) {
   return f < v ? std::nextafter(f, std::numeric_limits<float>::infinity()) : f;
 }
 
-/// The clusters that one thread cuts.
 struct Chunk {
   std::vector<MeshCluster> clusters;  ///< their first vertices count from the chunk's
   std::vector<std::uint8_t> corners;
@@ -102,13 +100,12 @@ class LocalVertices {
     count_ = 0;
   }
   [[nodiscard]] std::uint32_t count() const { return count_; }
-  /// The slot in which to look for a vertex.
   [[nodiscard]] std::size_t slot(std::uint32_t vertex) const {
     return from((vertex * 0x9E3779B9U) >> 22, vertex);
   }
   [[nodiscard]] bool is_free(std::size_t slot) const { return key_[slot] == kNoIndex; }
-  /// Returns the vertex's number in the cluster; appends a new vertex to `vertices`. Other vertices
-  /// may have been added since slot() was called.
+  /// Returns the vertex's number in the cluster; appends a new one to `vertices`. Others may have
+  /// been added since slot().
   std::uint32_t add(std::uint32_t vertex, std::size_t slot, std::vector<std::uint32_t>& vertices) {
     const std::size_t at = from(slot, vertex);
     if (key_[at] == vertex) return number_[at];
@@ -148,7 +145,6 @@ class Builder {
     return mesh_.face_materials.empty() ? 0 : mesh_.face_materials[mesh_.place(triangle).face];
   }
 
-  /// The vertices of triangles.
   void read() {
     if (mesh_.is_packed_list() && !mesh_.indices.empty()) {
       vertices_ = mesh_.indices.data();
@@ -176,7 +172,7 @@ class Builder {
     const double longest = std::max({size.x, size.y, size.z});
     const double scale = longest > 0 ? (1 << kCurveBits) / longest : 0;
     const auto cell = [&](double at) {
-      const double c = at * scale;  // NaN and what overflows go to an end
+      const double c = at * scale;  // NaN and overflow go to an end
       return c > 0 ? static_cast<std::uint32_t>(std::min(c, (1 << kCurveBits) - 1.0)) : 0U;
     };
     out_.triangle.resize(count_);
@@ -256,10 +252,10 @@ class Builder {
   void cut_chunk(std::size_t begin, std::size_t end, Chunk& out) const {
     out.corners.reserve((end - begin) * 3);
     LocalVertices local;
-    // Triangles of one cluster have one material, and all or none of them are on the curve.
+    // A cluster's triangles have one material, and all or none are on the curve.
     const auto kind = [&](std::size_t t) { return keys_[t] >> (kMaterialShift - 1); };
     for (std::size_t t = begin; t < end; ++t) {
-      // Prefetches, because the vertices lie anywhere in the mesh.
+      // Prefetches, because vertices lie anywhere in the mesh.
       __builtin_prefetch(vertices_ + std::size_t{out_.triangle[std::min(t + kAhead, end - 1)]} * 3);
       const std::uint32_t* const v = vertices_ + std::size_t{out_.triangle[t]} * 3;
       std::size_t slots[3];
@@ -286,8 +282,8 @@ class Builder {
     if (begin != end) order_vertices(out);
   }
 
-  /// Puts the vertices of the last cluster into the mesh's order, so that frames write them where
-  /// shading looks for them in runs.
+  /// Puts the last cluster's vertices in the mesh's order, so that frames write them in the runs
+  /// that shading reads.
   static void order_vertices(Chunk& out) {
     const MeshCluster& cluster = out.clusters.back();
     std::uint32_t* const vertex = out.vertex.data() + cluster.first_vertex;
@@ -357,8 +353,8 @@ class Builder {
         shortest = std::min(shortest, length(v));
       }
       longest = std::max(longest, edge);
-      // Two equal corners stay equal, so the triangle has no area on any screen. (Two corners with
-      // float64 positions may become equal later; that makes no triangle larger.)
+      // Two equal corners stay equal: no area on any screen. (Corners in float64 may become equal
+      // later, which makes no triangle larger.)
       if (!(shortest > 0)) continue;
       const Vec3d normal = cross(e[0], e[1]);
       const double twice_area = length(normal);
@@ -378,7 +374,7 @@ class Builder {
     double cosine = 1;
     for (std::size_t t = 0; t < n; ++t)
       cosine = std::min(cosine, dot(normals[t], Vec3d(cluster.axis)));
-    // The axis is of float32, the normals are as exact as kThin lets them be.
+    // The axis is float32, and normals are as exact as kThin allows.
     cosine -= 1e-5;
     if (!(cosine > 0)) return;
     cluster.cosine = float_below(cosine);
@@ -401,7 +397,7 @@ bool are_equal(double a, double b) {
 }
 
 #if defined(NDEBUG)
-/// Triangles that is_of() looks at.
+/// Triangles that is_of() compares.
 constexpr std::size_t kLooks = 8;
 #endif
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The data of a prepared mesh: its triangles along a curve through space, cut into clusters that
-// have vertices of their own, and for each cluster where it lies and which way it faces.
+// A prepared mesh: its triangles along a curve through space, cut into clusters with their own
+// vertices and bounds of place and direction.
 #pragma once
 
 #include <cstddef>
@@ -17,34 +17,32 @@ namespace parallel {
 class Threads;
 }
 
-/// Neighbouring triangles of one material, with bounds that hold for all of them.
 struct MeshCluster {
-  /// The most triangles. With half as many, a frame tests twice as many boxes; with twice as many,
-  /// it leaves out fewer (docs/log/prepared.md).
+  /// With half as many, a frame tests twice as many boxes; with twice as many, it leaves out fewer
+  /// (docs/log/prepared.md).
   static constexpr std::uint32_t kTriangles = 128;
   static constexpr std::uint32_t kVertices = 256;  ///< so that 8 bits tell them apart
 
   Vec3 min{}, max{};  ///< of its vertices, object space
-  /// The unit normals of its triangles lie within the angle of these about `axis`; cosine −1: any.
+  /// The triangles' unit normals lie within this angle of `axis`; cosine −1: any.
   Vec3 axis{};
   float cosine = -1, sine = 0;
-  /// No triangle's least height is smaller (twice its area over its longest edge, triangles of two
-  /// equal corners left out), and no edge longer.
+  /// Bounds of the triangles' least height (twice the area over the longest edge; not of triangles
+  /// with two equal corners) and longest edge.
   float least_height = 0, longest_edge = 0;
   std::uint32_t first_triangle = 0, first_vertex = 0;
   std::uint16_t triangles = 0, vertices = 0;
-  bool finite = false;  ///< else nothing is known of it, and it is never left out
+  bool finite = false;  ///< else nothing is known, and it is always drawn
 };
 
-/// The clusters of one mesh.
 struct MeshClusters {
-  /// How many clusters in a row share a box.
+  /// Clusters in a row that share a box.
   static constexpr std::size_t kNode = 32;
 
-  /// Options for tests with small meshes.
+  /// For tests with small meshes.
   struct Way {
     std::uint32_t triangles = MeshCluster::kTriangles;  ///< of a cluster at most
-    /// Also draw by clusters if a batch of setup holds the mesh, and look for hidden clusters in
+    /// Draw by clusters also if a batch of setup holds the mesh, and look for hidden clusters in
     /// each frame, however few triangles there are.
     bool always = false;
   };
@@ -59,7 +57,7 @@ struct MeshClusters {
   std::vector<std::uint32_t> vertex;    ///< of the mesh, by its place here
   std::vector<Vec3> positions;          ///< by place; empty where they are float64:
   std::vector<Vec3d> wide;
-  /// Boxes of kNode clusters each, and of all; not finite if one of them is not.
+  /// Boxes of kNode clusters each, and of all; not finite if a cluster is not.
   struct Box {
     Vec3 min{}, max{};
     bool finite = false;
@@ -71,13 +69,13 @@ struct MeshClusters {
   std::list<FaceCuts> cuts;
 
   [[nodiscard]] std::uint64_t bytes() const;
-  /// Whether `other` is the prepared mesh, by a few of its values (by all without NDEBUG).
+  /// Whether `other` is the prepared mesh, by a few of its values (all without NDEBUG).
   [[nodiscard]] bool is_of(const MeshView& other) const;
   /// The place here of the first triangle that has changed; triangle.size(): none. O(triangles).
   [[nodiscard]] std::size_t first_changed() const;
 
  private:
-  /// The vertices of the triangle at a place here.
+  /// Whether the triangle at a place here still has its vertices and positions.
   [[nodiscard]] bool is_as_it_was(const MeshCluster& cluster, std::size_t place) const;
 };
 

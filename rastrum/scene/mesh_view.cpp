@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The faces of a mesh as triangles, and what can be wrong with them.
+// The faces of a mesh as triangles, and checks of them.
 #include <algorithm>
 #include <numeric>
 #include <optional>
@@ -16,13 +16,11 @@
 namespace rastrum {
 namespace {
 
-/// Corners begin to end are one face.
 struct Run {
   std::uint64_t begin, end;
   [[nodiscard]] std::uint64_t triangles() const { return end - begin < 2 ? 0 : end - begin - 2; }
 };
 
-/// Faces that are runs of corners.
 struct Runs {
   const MeshView& mesh;
 
@@ -35,12 +33,12 @@ struct Runs {
     if (offsets.empty()) return {0, mesh.corner_count()};
     return {offsets.wide(face), offsets.wide(face + 1)};
   }
-  /// Each face has two triangles less than corners, so no list of them is kept.
+  /// A face has two triangles fewer than corners, so no list of them is kept.
   [[nodiscard]] std::uint64_t first_triangle(std::size_t face) const {
     const IndexView& offsets = mesh.faces.offsets;
     return offsets.empty() ? 0 : offsets.wide(face) - offsets.wide(0) - 2 * face;
   }
-  /// The face of a triangle: the last that does not begin after it. O(log faces).
+  /// The last face that does not begin after the triangle. O(log faces).
   [[nodiscard]] std::size_t face_of(std::uint64_t triangle) const {
     std::size_t low = 0, high = count();
     while (high - low > 1) {
@@ -96,7 +94,6 @@ void read_corners(const MeshView& mesh, std::size_t first, std::size_t n, std::u
     mesh.indices.read(first, n, out);
 }
 
-/// Corners that are read at once.
 constexpr std::size_t kCornersAtOnce = 256;
 
 void read_quads(const MeshView& mesh, std::size_t t, std::size_t n, std::uint32_t* out) {

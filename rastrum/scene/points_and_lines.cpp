@@ -10,12 +10,11 @@
 namespace rastrum {
 namespace {
 
-/// A message unless there is one value a position, or none.
+/// A message unless there is one value per position, or none.
 std::string each_problem(std::size_t values, const char* what, std::size_t positions) {
   return values == 0 ? std::string{} : count_problem(values, what, positions, "positions");
 }
 
-/// The first that is not empty.
 std::string first_problem(std::initializer_list<std::string> problems) {
   for (const std::string& p : problems)
     if (!p.empty()) return p;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Poses: a rig's nodes at a moment, then all that hangs on them. Computed in float64 in the order
-// written here, then rounded to float32 once; only exact functions of libm are used.
+// Poses: a rig's nodes at a moment, then all that depends on them. Computed in float64 in the order
+// written here and rounded to float32 once; only exact functions of libm are used.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -15,7 +15,7 @@
 namespace rastrum {
 namespace {
 
-/// The moment of an animation that begins again when it has ended.
+/// The moment of an animation that repeats.
 double moment_of(double seconds, double duration_s) {
   if (!(seconds > 0 && duration_s > 0)) return 0;
   const double rest = std::fmod(seconds, duration_s);  // exact by its definition
@@ -26,14 +26,13 @@ Quaternion quaternion(const double* xyzw) {
   return {xyzw[3], xyzw[0], xyzw[1], xyzw[2]};
 }
 
-/// The `width` numbers of a track at a moment. Before its first key and behind its last, they are
-/// that key's.
+/// The `width` numbers of a track at a moment; outside its keys, those of the nearest.
 void sample(const Rig::Track& track, double moment, double* to) {
   const std::vector<float>& times = *track.times;
   const float* const values = track.values->data();
   const std::size_t width = track.width;
   const bool cubic = track.interpolation == Rig::Interpolation::cubic_spline;
-  // Number i of key k. For a cubic spline, part 0 is its tangent in, 1 the value, 2 its tangent
+  // Number i of key k. A cubic spline's key has parts: 0 the tangent in, 1 the value, 2 the tangent
   // out.
   const auto number = [&](std::size_t k, std::size_t part, std::size_t i) -> double {
     return values[cubic ? (3 * k + part) * width + i : k * width + i];
@@ -92,8 +91,8 @@ void apply(const Rig::Track& track, double moment, Rig::Node& node) {
   }
 }
 
-/// Along the inverse transpose of an affine matrix: the cofactors, which exist where it does not,
-/// turned by the sign of the determinant.
+/// By an affine matrix's inverse transpose: the cofactors, which exist without an inverse, times
+/// the determinant's sign.
 Vec3d turned_normal(const Mat4d& a, const Vec3d& n) {
   const Vec3d x = row_of(a, 0), y = row_of(a, 1), z = row_of(a, 2);
   const Vec3d yz = cross(y, z), zx = cross(z, x), xy = cross(x, y);
@@ -101,7 +100,7 @@ Vec3d turned_normal(const Mat4d& a, const Vec3d& n) {
   return {sign * dot(yz, n), sign * dot(zx, n), sign * dot(xy, n)};
 }
 
-/// For each joint, the matrix from the shape as it was bound to where the joint has it now.
+/// For each joint, the matrix from the shape as bound to where the joint has it.
 std::vector<Mat4d> joint_matrices(const Rig::Skin& skin, const std::vector<Mat4d>& to_file) {
   std::vector<Mat4d> r;
   for (std::size_t j = 0; j < skin.joints.size(); ++j)
@@ -109,8 +108,7 @@ std::vector<Mat4d> joint_matrices(const Rig::Skin& skin, const std::vector<Mat4d
   return r;
 }
 
-/// The mean of a vertex's joints. Weights need not have the sum 1; a vertex without any follows its
-/// first joint.
+/// The mean of a vertex's joints. Weights need not sum to 1; without any, the first joint counts.
 Mat4d blend(const Rig::Shape& shape, std::size_t vertex, const std::vector<Mat4d>& joints) {
   const std::uint32_t* const joint = &shape.joints[vertex * shape.influences];
   const float* const weight = &shape.weights[vertex * shape.influences];
@@ -128,7 +126,7 @@ Mat4d blend(const Rig::Shape& shape, std::size_t vertex, const std::vector<Mat4d
   return r;
 }
 
-/// Morphing first, then the skin. `joints`: of the skin; null: none.
+/// Morphing first, then the skin. `joints`: the skin's; null: none.
 void deform(const Rig::Shape& shape, const std::vector<double>& weights,
             const std::vector<Mat4d>* joints, Mesh& mesh) {
   struct Active {

@@ -15,7 +15,7 @@ namespace rastrum {
 PreparedMesh::PreparedMesh(const MeshView& mesh, int threads) : view_(mesh) {
   const FloatScope floats;
   check_indices(mesh);
-  // Threads are not worth starting for less.
+  // Fewer triangles are not worth starting threads.
   constexpr std::size_t kLeast = 20'000;
   std::optional<parallel::Threads> own;
   if (threads != 1 && mesh.triangle_count() >= kLeast) own.emplace(threads);

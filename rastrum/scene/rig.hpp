@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The bones of a scene that moves, as glTF 2.0 has them (3.5.3 nodes, 3.7.2.2 morph targets, 3.7.3
-// skins, 3.11 animations): plain data that a reader fills and pose.cpp reads.
+// The rig of a moving scene, as in glTF 2.0 (3.5.3 nodes, 3.7.2.2 morph targets, 3.7.3 skins, 3.11
+// animations): plain data that readers fill and pose.cpp reads.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +17,8 @@
 
 namespace rastrum {
 
-/// Indices are of the vectors beside them; `mesh`, `instance`, `camera` and `light` count from the
-/// file's first.
+/// Indices are of the vectors here; `mesh`, `instance`, `camera` and `light` count from the file's
+/// first.
 struct Rig {
   static constexpr std::int32_t kNone = -1;
 
@@ -29,9 +29,9 @@ struct Rig {
     Vec3d translation{};
     Quaternion rotation{};  ///< of unit length
     Vec3d scale{1, 1, 1};
-    std::vector<double> weights{};  ///< of the morph targets of its mesh; empty: the shape's own
+    std::vector<double> weights{};  ///< of its mesh's morph targets; empty: the shape's own
 
-    /// The place below its parent: scaled, turned, moved.
+    /// The transform to its parent: scaled, turned, moved.
     [[nodiscard]] Mat4d local() const;
   };
   std::vector<Node> nodes;
@@ -39,7 +39,7 @@ struct Rig {
 
   struct Skin {
     std::vector<std::uint32_t> joints;  ///< nodes
-    std::vector<Mat4d> inverse_bind;    ///< one a joint
+    std::vector<Mat4d> inverse_bind;    ///< one per joint
   };
   std::vector<Skin> skins;
 
@@ -50,14 +50,13 @@ struct Rig {
       std::vector<Vec3> positions, normals;  ///< displacements; either may be empty
     };
     std::vector<Target> targets;
-    std::vector<double> rest_weights;   ///< of the targets; those that it has not are 0
-    std::size_t influences = 0;         ///< joints a vertex
-    std::vector<std::uint32_t> joints;  ///< `influences` a vertex, of the skin
+    std::vector<double> rest_weights;   ///< of the targets; missing ones are 0
+    std::size_t influences = 0;         ///< joints per vertex
+    std::vector<std::uint32_t> joints;  ///< `influences` per vertex, of the skin
     std::vector<float> weights;         ///< beside `joints`, not negative
   };
   std::vector<std::shared_ptr<const Shape>> shapes;
 
-  /// A mesh of the scene that is made of a shape.
   struct Deformed {
     std::uint32_t mesh = 0, shape = 0;
     std::int32_t skin = kNone;
@@ -68,14 +67,14 @@ struct Rig {
   struct Placed {
     std::uint32_t instance = 0, node = 0;
   };
-  std::vector<Placed> placed;  ///< not those of skins, whose joints place them
+  std::vector<Placed> placed;  ///< not those of skins, which joints place
   struct Seeing {
     std::uint32_t camera = 0, node = 0;
   };
   std::vector<Seeing> cameras;
   struct Lamp {
     std::uint32_t light = 0, node = 0;
-    Light of_node{};  ///< where the node's axes are the world's
+    Light of_node{};  ///< as if the node's axes were the world's
   };
   std::vector<Lamp> lamps;
 
@@ -83,8 +82,8 @@ struct Rig {
   enum class Interpolation : std::uint8_t { step, linear, cubic_spline };
   using Floats = std::shared_ptr<const std::vector<float>>;
 
-  /// Keys of one property of one node. A key has `width` numbers; with a cubic spline three times
-  /// as many: the tangent that comes in, the value, the tangent that goes out.
+  /// Keys of a node's property. A key has `width` numbers; of a cubic spline three times as many:
+  /// tangent in, value, tangent out.
   struct Track {
     std::uint32_t node = 0;
     Path path = Path::translation;
@@ -95,13 +94,13 @@ struct Rig {
   struct Clip {
     std::vector<Track> tracks;
   };
-  std::vector<Clip> clips;  ///< one an animation
+  std::vector<Clip> clips;  ///< one per animation
 };
 
-/// Puts a camera where a node is: it looks along the node's −z, +y up.
+/// Places a camera at a node, looking along its −z, +y up.
 void look_from(Camera& camera, const Mat4d& node_to_world);
 
-/// Each node's matrix to the file's space.
+/// The matrix from each node to the file's space.
 [[nodiscard]] std::vector<Mat4d> to_root(const std::vector<Rig::Node>& nodes,
                                          const std::vector<std::uint32_t>& parents_first);
 

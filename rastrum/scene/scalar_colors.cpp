@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The colour of a number in a colour map (color_map.hpp). Computed in float64 in the order written
-// here, then rounded to float32 once; docs/scalar_rules.md has the formula.
+// here and rounded to float32 once (formula: docs/scalar_rules.md).
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -47,8 +47,8 @@ Vec4 blended(const std::vector<Vec4>& colors, double t) {
   return blend(colors[i], colors[j], at - static_cast<double>(i));
 }
 
-/// `count` colours of a map. A discrete map gives its own, again from the first if it has too few.
-/// A blended one gives colours from end to end, or its middle for a single one.
+/// `count` colours of a map. Discrete maps repeat their own. Blended ones give colours from end to
+/// end, or the middle for a single one.
 std::vector<Vec4> chosen(const ColorMap& map, std::size_t count) {
   std::vector<Vec4> colors;
   for (std::size_t i = 0; i < count; ++i)
@@ -178,7 +178,7 @@ Vec4 ScalarColors::operator()(double value) const {
 
 Vec4 ScalarColors::with_isolines(Vec4 c, double value, double per_px) const {
   if (!(per_px > 0) || !std::isfinite(value)) return c;
-  // The nearest of them is one of the two beside the number.
+  // The nearest isoline is beside the number.
   const auto above = std::lower_bound(isolines_.begin(), isolines_.end(), value);
   double off = std::numeric_limits<double>::infinity();
   if (above != isolines_.end()) off = *above - value;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The scalars of a scene: what of it shows some, their range, and those that coordinates make.
+// A scene's scalars: which geometry shows some, their range, scalars made of coordinates.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Grows `range`, empty at first, by the finite numbers of `values`; returns how many are not.
+/// Grows `range`, empty at first, by finite values. Returns how many are not finite.
 template <class Values>
 std::uint64_t grow(ScalarRange& range, const Values& values, bool above_zero = false) {
   std::uint64_t others = 0;
@@ -38,7 +38,6 @@ ScalarRange or_zero(ScalarRange range) {
   return range.low <= range.high ? range : ScalarRange{0, 0};
 }
 
-/// The scalars of all geometries of a scene.
 template <class F>
 void for_each_scalars(const Scene& scene, F&& f) {
   for (const Mesh& mesh : scene.meshes)
@@ -59,7 +58,6 @@ ArrayView<Vec3> positions_of(const G& g) {
     return g.view().positions;
 }
 
-/// Gives every instance a mesh, or geometry, of its own.
 void make_unique(Scene& scene) {
   std::vector<bool> mesh_taken(scene.meshes.size()), geometry_taken(scene.geometries.size());
   for (Instance& instance : scene.instances) {
@@ -79,7 +77,7 @@ void make_unique(Scene& scene) {
   }
 }
 
-/// The scalars of `name` from places in the world.
+/// `value`: of a place in the world.
 template <class Value>
 void make_scalars(Scene& scene, const std::string& name, const Value& value) {
   make_unique(scene);

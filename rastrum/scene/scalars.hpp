@@ -6,8 +6,8 @@
 
 namespace rastrum {
 
-/// The instance's own number, else its geometry's. If that is not a mesh, Per::vertex means one for
-/// each position or primitive. `instance` must outlive the result.
+/// The instance's own number, else its geometry's. Except for meshes, Per::vertex means one per
+/// position or primitive. `instance` must outlive the result.
 [[nodiscard]] MeshScalarsView scalars_of(const InstanceView& instance);
 
 }  // namespace rastrum

@@ -19,7 +19,7 @@
 namespace rastrum {
 namespace {
 
-/// The scalars that the scene shows; null: the geometry has none of the name.
+/// Null: the geometry has no scalars of the name that the scene shows.
 const NamedScalars* shown(const Scene& scene, const std::vector<NamedScalars>& scalars) {
   if (scene.shown_scalars.empty()) return nullptr;
   for (const NamedScalars& s : scalars)
@@ -27,7 +27,6 @@ const NamedScalars* shown(const Scene& scene, const std::vector<NamedScalars>& s
   return nullptr;
 }
 
-/// Sets the scalars of a geometry that is not a mesh.
 void set_scalars(GeometryView& geometry, const ScalarView& values) {
   std::visit(
       [&](auto& g) {
@@ -37,7 +36,7 @@ void set_scalars(GeometryView& geometry, const ScalarView& values) {
       geometry);
 }
 
-/// The views of a scene's meshes, then of its other geometries.
+/// Views of meshes, then of other geometries.
 std::vector<GeometryView> views_of(const Scene& scene) {
   std::vector<GeometryView> views;
   views.reserve(scene.meshes.size() + scene.geometries.size());
@@ -55,7 +54,7 @@ std::vector<GeometryView> views_of(const Scene& scene) {
   return views;
 }
 
-/// Which of views_of(scene) an instance has.
+/// The number of an instance's view in views_of(scene).
 std::size_t view_number(const Scene& scene, const Instance& instance) {
   const auto require = [](std::size_t number, std::size_t count, const char* what) {
     if (number < count) return number;
@@ -80,8 +79,8 @@ Material plain_material(bool has_colors) {
   m.name = "plain";
   m.metallic = 0;
   m.double_sided = true;
-  // Vertex colours stand for themselves, and their alpha counts. Without: linear light that the
-  // sRGB transfer turns into the plain shaders' 0.8, 0.7, 0.6 to an ulp.
+  // Vertex colours stay, and their alpha counts. Without them: linear light that sRGB turns into
+  // the plain shaders' 0.8, 0.7, 0.6 to an ulp.
   if (has_colors)
     m.alpha_mode = AlphaMode::blend;
   else
@@ -125,7 +124,7 @@ void Scene::append(Scene other) {
   const auto geometry_offset = static_cast<std::uint32_t>(geometries.size());
   const auto mapping_offset = static_cast<std::uint32_t>(scalar_mappings.size());
   const auto texture_offset = static_cast<std::int32_t>(textures.size());
-  // A file without materials looks as it did once another file brings some.
+  // A file without materials keeps its look when another file brings some.
   const bool any_materials = !materials.empty() || !other.materials.empty();
   if (any_materials && materials.empty()) add_plain_materials(*this);
   if (any_materials && other.materials.empty()) add_plain_materials(other);
@@ -263,7 +262,7 @@ Camera fit_camera(const SceneView& scene, float fov_rad, bool orthographic, Vec3
   Camera along;
   along.eye = -normalize(direction);
   along.up = up;
-  (void)world_to_camera(along);  // throws where there is no direction
+  (void)world_to_camera(along);  // throws without a direction
   const BoundingSphere ball = bounding_sphere(scene, ranks);
   const double distance = ball.radius / elementary::sin(static_cast<double>(fov_rad) / 2);
   Camera camera;

@@ -38,7 +38,7 @@ const ArrayView<Vec3>& centers_or_positions(const G& g) {
     return g.positions;
 }
 
-/// How many elements a geometry has, and the position of one of them.
+/// The number of a geometry's elements, and the position of one.
 template <class G>
 std::size_t element_count(const G& g) {
   if constexpr (kHasEnds<G>)
@@ -105,9 +105,9 @@ std::vector<bool> used_of(const MeshView& given) {
   return used;
 }
 
-/// Calls f for places about a ball: its extremes along the axes, and the edges and corners of the
-/// cube about it, drawn in so that no plane that holds all of them cuts off more than a fortieth of
-/// the radius.
+/// Calls f for places around a ball: its extremes along the axes, and the edges and corners of its
+/// cube, drawn in so that no plane that holds all of them cuts off more than a fortieth of the
+/// radius.
 template <class F>
 void visit_ball(const Vec3d& centre, double radius, const F& f) {
   if (!(radius >= 0)) return;
@@ -121,7 +121,7 @@ void visit_ball(const Vec3d& centre, double radius, const F& f) {
       }
 }
 
-/// Calls f(position) for the elements [first, end) that are in use, or for places about them.
+/// Calls f(position) for the elements [first, end) in use, or for places around them.
 template <class F>
 void visit_elements(const MeshView& g, const std::vector<bool>& used, std::size_t first,
                     std::size_t end, const F& f) {
@@ -153,8 +153,7 @@ void SceneVertices::visit(const Source& source, std::size_t run, const F& f) con
 }
 
 SceneVertices::SceneVertices(const SceneView& scene) : scene_(scene) {
-  // Sources by the memory that they read; two of the same memory may still see it in different
-  // ways.
+  // Sources by the memory that they read. Two of the same memory may still see it differently.
   std::multimap<std::array<const void*, 3>, std::uint32_t> sources_of;
   const auto source_of = [&](const MeshView& mesh) {
     const std::array<const void*, 3> key{

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The vertices that the instances of a scene use, in runs whose boxes are known: what a fit reads.
+// The vertices that a scene's instances use, in runs with known boxes, for a fit.
 #pragma once
 
 #include <cstddef>
@@ -13,13 +13,13 @@
 
 namespace rastrum {
 
-/// The vertices in use of a mesh; the positions of points and lines; for spheres, discs, tubes and
-/// cylinders, places about them whose convex hull holds the surface that is drawn. Work and memory
-/// O(vertices + triangles + instances), once for instances of one mesh.
+/// A mesh's vertices in use; positions of points and lines; for spheres, discs, tubes and
+/// cylinders, places whose convex hull holds the drawn surface. Work and memory O(vertices +
+/// triangles + instances), once for instances of one mesh.
 class SceneVertices final : public FitVertices {
  public:
-  /// `scene` must outlive it. Throws Error{invalid_argument} for an index out of range and for too
-  /// few radii.
+  /// `scene` must outlive this. Throws Error{invalid_argument} for an index out of range or too few
+  /// radii.
   explicit SceneVertices(const SceneView& scene);
 
   [[nodiscard]] std::size_t runs() const override { return instance_of_.size(); }
@@ -32,7 +32,7 @@ class SceneVertices final : public FitVertices {
   struct Source {
     GeometryRef geometry;
     std::vector<bool> used{};  ///< of a mesh's positions
-    std::vector<Box> boxes{};  ///< one a run
+    std::vector<Box> boxes{};  ///< one per run
   };
   struct Instance {
     std::uint32_t source;
@@ -48,7 +48,7 @@ class SceneVertices final : public FitVertices {
   SceneView scene_;
   std::vector<Source> sources_;
   std::vector<Instance> instances_;
-  std::vector<std::uint32_t> instance_of_;  ///< a run's
+  std::vector<std::uint32_t> instance_of_;  ///< by run
 };
 
 }  // namespace rastrum

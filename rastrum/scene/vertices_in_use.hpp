@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The vertices of a scene in world space, which a fit reads several times.
+// A scene's vertices in world space, which a fit reads several times.
 #pragma once
 
 #include <algorithm>
@@ -23,16 +23,14 @@ namespace rastrum {
 
 class VerticesInUse {
  public:
-  /// `scene` must outlive it, as must the vertices beyond() of `ranks`, which may be null. Throws
-  /// as SceneVertices.
+  /// `scene` and the beyond() of `ranks` (may be null) must outlive this. Throws as SceneVertices.
   explicit VerticesInUse(const SceneView& scene, const FitRanks* ranks = nullptr)
       : scene_(scene), beyond_(ranks == nullptr ? nullptr : ranks->beyond()) {}
 
-  /// Returns `none` after all finite vertices in use, in world space, were added in order: by
-  /// Q::add(Vec3d), and by Q::merge(Q) for the result of later ones. A Q has maxima of functions of
-  /// one vertex. values() are the maxima so far, and no vertex in a box has more than bounds(box),
-  /// an array of the same size. So runs whose boxes are known are read only if one of their
-  /// vertices may change the result.
+  /// Adds all finite vertices in use, in world space and in order, to `none`, and returns the
+  /// result. Q::add(Vec3d) adds one, Q::merge(Q) the result of later ones. A Q keeps maxima of
+  /// functions of one vertex: values() so far, bounds(box) as upper bounds in a box. So a run with
+  /// a known box is read only if it may change the result.
   template <class Q>
   [[nodiscard]] Q reduce(const Q& none) const {
     Q all = none;
@@ -41,7 +39,7 @@ class VerticesInUse {
     return all;
   }
 
-  /// A box in world space, larger than its contents by more than float64 rounds.
+  /// A box in world space, larger than its contents by more than float64's rounding.
   struct WorldBox {
     WorldBox(const FitVertices::Box& box, const Mat4d& m) {
       const Vec3d c{(box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2,
@@ -66,14 +64,14 @@ class VerticesInUse {
   };
 
  private:
-  /// Merges the result of the vertices, from `none`, into `all`.
+  /// Merges the vertices' result into `all`.
   template <class Q>
   static void add(const FitVertices& vertices, const Q& none, Q& all) {
     const std::size_t n = vertices.runs();
     constexpr std::size_t kAsked = std::tuple_size_v<decltype(none.values())>;
-    // First read runs whose boxes nobody knows, and those that promise most. Boxes are asked for
-    // twice, and nothing is kept for runs that are left out: a mesh at many nodes has as many runs
-    // as all its nodes together.
+    // First reads runs without a known box, and those that promise most. Boxes are asked for twice
+    // and nothing is kept for skipped runs, since a mesh at many nodes has as many runs as these
+    // together.
     std::vector<std::size_t> first;
     std::size_t seeds[kAsked];
     double most[kAsked] = {};
@@ -97,7 +95,7 @@ class VerticesInUse {
     Q best = all;
     for (const Q& q : of_first) best.merge(q);
 
-    // Then read runs that may still win; all are merged in order.
+    // Then reads runs that may still win, and merges all in order.
     std::vector<std::size_t> some;
     std::size_t merged = 0;
     const auto merge = [&](std::size_t end) {
@@ -121,7 +119,7 @@ class VerticesInUse {
       if (!box || is_empty(*box)) continue;
       const auto bounds = none.bounds(WorldBox(*box, vertices.object_to_world(i)));
       const auto values = best.values();
-      bool wins = false;  // written so that what is no number is read
+      bool wins = false;  // written so that NaN is read
       for (std::size_t k = 0; k < kAsked; ++k) wins = wins || !(bounds[k] < values[k]);
       if (!wins) continue;
       some.push_back(i);
@@ -130,14 +128,14 @@ class VerticesInUse {
     merge(n);
   }
 
-  /// How many runs with known boxes are read together: enough for all threads.
+  /// Runs with known boxes that are read together: enough for all threads.
   static constexpr std::size_t kAtOnce = 1024;
 
   [[nodiscard]] static bool is_empty(const FitVertices::Box& box) {
     return !(box.min.x <= box.max.x);
   }
 
-  /// The result of each of these runs, from `none`. The runs rise.
+  /// The result of each of these runs, which rise, from `none`.
   template <class Q>
   [[nodiscard]] static std::vector<Q> read(const FitVertices& from,
                                            std::span<const std::size_t> runs, const Q& none) {
@@ -145,7 +143,7 @@ class VerticesInUse {
     if (runs.empty()) return made;
     from.read(runs, [&](std::size_t i, std::span<const Vec3d> vertices) {
       const Mat4d& m = from.object_to_world(runs[i]);
-      Q q = made[i];  // one's own: others write beside it
+      Q q = made[i];  // a copy: other threads write beside it
       for (const Vec3d& p : vertices)
         if (const Vec3d w = moved_by(m, p); is_finite(w)) q.add(w);
       made[i] = q;
@@ -169,8 +167,8 @@ struct ExtentOfVertices : Box3d {
   }
 };
 
-/// The box of all vertices, on all ranks alike; `vertices` becomes these. Errors in a rank's
-/// vertices are found here.
+/// The box of all vertices, alike on all ranks; `vertices` becomes these. Finds errors in a rank's
+/// vertices.
 inline Box3d extent_of(const SceneView& scene, FitRanks* ranks,
                        std::optional<VerticesInUse>& vertices) {
   ExtentOfVertices extent;

@@ -14,7 +14,7 @@ namespace {
 DistanceByDepth by_rows(const Camera& camera) {
   const Mat4d v = world_to_camera(camera);
   const auto& m = camera.matrix->m;
-  // How a row of the matrix changes along an axis of the camera; then its value at the eye.
+  // How a row of the matrix changes along an axis of the camera, and its value at the eye.
   const auto along = [&](int row, int axis) {
     return m[row][0] * v.m[axis][0] + m[row][1] * v.m[axis][1] + m[row][2] * v.m[axis][2];
   };
@@ -44,7 +44,7 @@ DistanceByDepth distance_by_depth(const Camera& camera) {
 
 double view_distance(const Camera& camera, float depth) {
   const FloatScope floats;
-  // Where nothing is, the distance is infinite, also for cameras whose depth tells no distance.
+  // Infinite without a surface, also for cameras whose depth tells no distance.
   if (!(depth > 0)) return std::numeric_limits<double>::infinity();
   return distance_by_depth(camera)(depth);
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The distance along a camera's axis by reversed depth, with all that does not change from pixel to
-// pixel found once.
+// The distance along a camera's axis by reversed depth, with all that pixels share found once.
 #pragma once
 
 #include <limits>
@@ -9,8 +8,8 @@
 
 namespace rastrum {
 
-/// view_distance of each kind of camera is a fraction of two lines of depth, (p − d q) / (d r + s)
-/// in this order, where what a kind has not is 0 or 1: that changes no bit.
+/// Each kind of camera has the distance (p − d q) / (d r + s), in this order. Terms that a kind
+/// lacks are 0 or 1, which changes no bit.
 struct DistanceByDepth {
   double p = 0, q = 0, r = 0, s = 1;
 
@@ -21,7 +20,6 @@ struct DistanceByDepth {
   }
 };
 
-/// Throws as view_distance does.
 [[nodiscard]] DistanceByDepth distance_by_depth(const Camera& camera);
 
 }  // namespace rastrum

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Views by name and angle; see fit.hpp.
+// Views by name and angle (fit.hpp).
 #include <cmath>
 
 #include <rastrum/core/angle.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Vertices at one place are one point, so that triangles that share no indices have neighbours.
+// Joins vertices at one place, so that triangles that share no indices have neighbours.
 #pragma once
 
 #include <algorithm>
@@ -17,17 +17,17 @@
 
 namespace rastrum {
 
-/// A number for each vertex, the same for equal positions, counted from 0 as they first come.
+/// A number per vertex, equal for equal positions, from 0 as they first come.
 struct JoinedPoints {
   std::vector<std::uint32_t> of_vertex;
   std::size_t count = 0;
 };
 
-/// `position(v)` of each vertex v < count is a Vec3d, or becomes one; called from any thread.
-/// count < 2³². Work O(count · threads), span O(count); 12 bytes a vertex beside the result.
+/// `position(v)`, for v < count < 2³², is a Vec3d or becomes one; called from any thread. Work
+/// O(count · threads), span O(count); 12 bytes per vertex beside the result.
 template <class Exec, class Position>
 [[nodiscard]] JoinedPoints weld(Exec& exec, std::size_t count, const Position& position) {
-  // -0 equals 0 and has other bits; adding 0 makes them one.
+  // −0 equals 0 but has other bits; adding 0 makes them equal.
   const auto key = [&](std::size_t vertex) {
     const Vec3d p = position(static_cast<std::uint32_t>(vertex));
     return std::bit_cast<std::array<std::uint64_t, 3>>(Vec3d{p.x + 0.0, p.y + 0.0, p.z + 0.0});

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The way of factors into a row of 8-bit colours: what the plain kernel and those of each
-// instruction set have in common.
+// Darkens 8-bit colours by factors: what the plain and the SIMD kernels share.
 #pragma once
 
 #include <rastrum/device.hpp>
@@ -9,8 +8,8 @@
 
 namespace rastrum::overlay {
 
-/// colors[i] becomes colors[i] · factor[i] + ink · (1 − factor[i]), to the nearest, ties to even;
-/// alpha stays. `ink`: in [0, 255].
+/// colors[i] becomes colors[i] · factor[i] + ink · (1 − factor[i]), to nearest, ties to even; alpha
+/// stays. `ink`: in [0, 255].
 using DarkenKernel = void (*)(const float* factor, Vec3 ink, int count, Rgba8* colors);
 
 void darken_plain(const float* factor, Vec3 ink, int count, Rgba8* colors);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Factors into 8-bit colours with Highway, compiled once per instruction set: a pixel a lane.
+// Darkens 8-bit colours with Highway, per instruction set. A lane is a pixel.
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/overlay/effects/darken_simd.cpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Edges of the triangles that are seen: at each pixel the sides of the one that its id names, as
-// lines of the picture. A hidden triangle has no pixel, so no depth is compared and no offset is
-// needed. A side that two faces in view share is drawn half by each.
+// Edges of visible triangles: each pixel draws the sides of the triangle that its id names. A
+// hidden triangle has no pixel, so no depth is compared and no offset is needed. Two faces in view
+// each draw half of a shared side.
 #include <rastrum/overlay/effects/edges.hpp>
 
 #include <algorithm>
@@ -31,8 +31,8 @@ void TriangleSides::find(std::int64_t id) {
   const MeshView& mesh = *instance.mesh();
   std::uint32_t vertex[3];
   mesh.read_triangles(static_cast<std::size_t>(place.primitive), 1, vertex);
-  // Homogeneous places in the picture, px: the line through two of them is their cross product, in
-  // front of the eye or behind it.
+  // Homogeneous positions in the picture (px), also behind the eye. The line through two of them is
+  // their cross product.
   Vec3d corner[3];
   for (int c = 0; c < 3; ++c) {
     const Vec3d p = mesh.positions.wide(vertex[c]);
@@ -47,7 +47,7 @@ void TriangleSides::find(std::int64_t id) {
     if ((drawn >> c & 1) == 0) continue;
     const Vec3d line = cross(corner[c], corner[(c + 1) % 3]);
     const double scale = std::sqrt(line.x * line.x + line.y * line.y);
-    // Both ends in one place: no line.
+    // Both ends coincide: no line.
     if (!(scale > 0) || !std::isfinite(scale)) continue;
     line_[count_++] = {line.x / scale, line.y / scale, line.z / scale};
   }

@@ -10,18 +10,16 @@
 
 namespace rastrum::overlay {
 
-/// Throws Error{invalid_argument} for a width out of range.
 void check_edge_width(double width_px);
 
-/// The sides of the triangle that was asked about last.
 class TriangleSides {
  public:
-  /// For a picture of that size. Both references outlive this.
+  /// `edges` and `to_clip` must outlive this.
   TriangleSides(const SceneEdges& edges, const Mat4d& to_clip, int width, int height,
                 double width_px)
       : edges_(edges), to_clip_(to_clip), width_(width), height_(height), half_px_(width_px / 2) {}
-  /// 1 less the share of pixel (x, y) that the nearest line of primitive `id` covers (−1: none):
-  /// what is left of half a pixel about it, across the line.
+  /// 1 minus the share of pixel (x, y), across the line, that the nearest side of primitive `id`
+  /// (−1: none) covers.
   [[nodiscard]] float factor(std::int64_t id, int x, int y);
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Eye-dome lighting, silhouettes and what calls the kernels, row by row. A pixel's result depends
-// on no other's, so threads and their rows change nothing.
+// Eye-dome lighting, silhouettes, and the loops over rows that call the kernels. Pixels do not
+// depend on each other, so threads change nothing.
 #include <rastrum/effects.hpp>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ struct Effects::Impl {
   parallel::Threads threads;
   Isa isa;
   std::vector<float> scratch;
-  parallel::ScratchPool<std::vector<float>> rows;  ///< a thread's own
+  parallel::ScratchPool<std::vector<float>> rows;  ///< one per thread
 
   Impl(int count, std::optional<Isa> wanted) : threads(count), isa(choose_isa(wanted)) {}
 
@@ -41,13 +41,13 @@ struct Effects::Impl {
     scratch.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     return {scratch.data(), width, height};
   }
-  /// use(y, x, n, factors): how much of their light n pixels from (x, y) on keep; null where all of
-  /// them keep it all, since they see nothing.
+  /// use(y, x, n, factors): the share of light that the n pixels from (x, y) keep. Null: they show
+  /// no surface and keep all.
   template <class Use>
   void occlusion(const Surface& surface, const Camera& camera, const AmbientOcclusion& options,
                  const Use& use) {
     const int width = surface.view_depth.width, height = surface.view_depth.height;
-    // Lanes gather by 32-bit numbers from the first row on.
+    // Lanes gather by 32-bit indices from the first row.
     const std::ptrdiff_t stride = surface.view_depth.stride;
     if (stride * height > INT32_MAX || stride * height < INT32_MIN)
       reject("effects: Surface::view_depth has more than 2^31 numbers from first to last");
@@ -55,12 +55,13 @@ struct Effects::Impl {
     const auto kernel = overlay::occlusion_kernel(isa);
     const auto blur = overlay::blur_kernel(isa);
     const ImageView<float> across = image(width, height);
-    // Tiles whose samples, 100 px around, stay in a second-level cache also of wide pictures.
+    // The samples of a tile, 100 px around it, stay in a second-level cache, for wide pictures,
+    // too.
     constexpr int kTileWidth = 128, kTileHeight = 32;
     const auto columns = static_cast<std::size_t>((width + kTileWidth - 1) / kTileWidth);
     const auto bands = static_cast<std::size_t>((height + kTileHeight - 1) / kTileHeight);
     std::vector<std::uint8_t> seen(bands * columns, 0);
-    /// The rows of a band, and of each tile whether something is seen in it.
+    /// Calls body(first row, end row, flags) for each band. A flag: the tile shows a surface.
     const auto for_each_band = [&](const auto& body) {
       parallel::for_each_index(threads, bands, [&](std::size_t band) {
         const int y0 = static_cast<int>(band) * kTileHeight;
@@ -84,7 +85,7 @@ struct Effects::Impl {
         for (int y = y0; y < y1; ++y)
           if (kernel(frame, y, x, x + n, band.row(y - y0))) of_tiles[i] = 1;
       });
-      // Where nothing is, whatever stands in `across` has no weight.
+      // Empty tiles need no `across`: the next blur gives them no weight.
       for (int y = y0; y < y1; ++y)
         for_each_tile([&](std::size_t i, int x, int n) {
           if (of_tiles[i] != 0)
@@ -142,7 +143,7 @@ bool is_there(float depth) {
   return depth < overlay::kFarthest;
 }
 
-/// How a camera's depths are compared: by their ratio in perspective, else by the picture's height.
+/// Compares depths: by their ratio in perspective, else in picture heights.
 struct Steps {
   bool perspective;
   float per_height;
@@ -152,12 +153,12 @@ struct Steps {
     perspective = lens.perspective;
     per_height = static_cast<float>(1 / (std::fabs(lens.vy) * height));
   }
-  /// 2 (d − e) / (d + e): log(d / e) up to the third order, and no logarithm.
+  /// 2 (d − e) / (d + e) is log(d / e) up to terms of third order.
   [[nodiscard]] float behind(float d, float e) const {
     return perspective ? 2 * (d - e) / (d + e) : (d - e) * per_height;
   }
-  /// How far the middle lies in front of the line between its neighbours, 0 on a plane: 1/d is
-  /// linear in the picture in perspective, d in an orthographic one.
+  /// How far the middle lies in front of the line between its neighbours; 0 on a plane. In
+  /// perspective 1/d is linear in the picture, else d.
   [[nodiscard]] float in_front(float before, float d, float after) const {
     return perspective ? (1 - d / before) + (1 - d / after)
                        : ((before - d) + (after - d)) * per_height;
@@ -220,7 +221,7 @@ void Effects::eye_dome(const Surface& surface, const Camera& camera, const EyeDo
       reject("EyeDome::radius_px must lie in 1 to 64, got ", options.radius_px);
     const auto depth = surface.view_depth;
     const Steps steps(camera, depth.width, depth.height);
-    // Eight neighbours on a circle, as in the paper's first ring; 100: steps are fractions of the
+    // Eight neighbours on a circle, as in the paper's first ring. 100: steps are fractions of the
     // distance.
     const int r = options.radius_px, s = std::max(1, (r * 181 + 128) / 256);
     const int around[8][2] = {{r, 0}, {s, s}, {0, r}, {-s, s}, {-r, 0}, {-s, -s}, {0, -r}, {s, -s}};
@@ -264,9 +265,8 @@ void Effects::silhouettes(const Surface& surface, const Camera& camera, const Si
     const auto threshold = static_cast<float>(options.depth),
                cosine = static_cast<float>(sin_cos_degrees(options.angle_degrees).cos);
     const auto has_normal = [](Vec3 n) { return n.x != 0 || n.y != 0 || n.z != 0; };
-    // Is there an edge of (x, y) towards (x + dx, y + dy)? A step is the nearer one's; where two
-    // surfaces meet at one depth, it is of the left and upper one, so that lines are not twice as
-    // wide.
+    // Is there an edge between (x, y) and (x + dx, y + dy)? The nearer pixel gets it; where
+    // surfaces meet at one depth, the left or upper one, so that lines are not twice as wide.
     const auto is_edge = [&](int x, int y, int dx, int dy) {
       const int qx = x + dx, qy = y + dy;
       if (qx < 0 || qx >= depth.width || qy < 0 || qy >= depth.height) return false;
@@ -305,7 +305,7 @@ void Effects::edges(ImageView<const std::int64_t> ids, const SceneEdges& edges,
     check_size(factor, ids.width, ids.height, "the factors' image");
     overlay::check_edge_width(width_px);
     const Mat4d to_clip = world_to_clip(camera, ids.width, ids.height);
-    // Before threads work, which may not throw.
+    // Refuses bad ids first, because threads may not throw.
     std::int64_t last = -1;
     for (int y = 0; y < ids.height; ++y)
       last = std::max(last, *std::max_element(ids.row(y), ids.row(y) + ids.width));

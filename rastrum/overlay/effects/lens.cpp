@@ -13,7 +13,7 @@ Lens lens_of(const Camera& camera, int width, int height) {
   const std::optional<Mat4d> to_world = inverse(world_to_camera(camera));
   if (!to_world) reject("effects: the camera's matrix is singular");
   const Mat4d p = world_to_clip(camera, width, height) * *to_world;
-  // w is −z · k or a constant k; what composing leaves of the other terms is rounding.
+  // w is −z · k or a constant k. Other terms are rounding of the composition.
   const auto& w = p.m[3];
   Lens lens;
   lens.perspective = std::fabs(w[2]) > std::fabs(w[3]);
@@ -21,7 +21,7 @@ Lens lens_of(const Camera& camera, int width, int height) {
   if (!(k != 0) || std::fabs(w[0]) > small || std::fabs(w[1]) > small ||
       (lens.perspective ? false : std::fabs(w[2]) > small))
     reject("effects: planes of equal depth of the camera's matrix are not across its axis");
-  // x_clip = m00 x + m01 y + m02 z + m03 and so for y. In perspective x = u d, z = −d and w = k d.
+  // x_clip = m00 x + m01 y + m02 z + m03, y likewise. In perspective x = u d, z = −d and w = k d.
   const double along = lens.perspective ? -1 : 0;
   const double m00 = p.m[0][0] / k, m01 = p.m[0][1] / k, m11 = p.m[1][1] / k;
   const double m0 = (along != 0 ? along * p.m[0][2] : p.m[0][3]) / k,

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ambient occlusion, plain: the reference of the lanes (occlusion_simd.cpp), operation by
-// operation. McGuire, Mara and Luebke, Scalable Ambient Obscurance (HPG 2012), section 2.3: around
-// a point P with normal n, samples Q of the picture within a radius take
+// Ambient occlusion, plain: the reference that occlusion_simd.cpp follows operation by operation.
+// McGuire, Mara and Luebke, Scalable Ambient Obscurance (HPG 2012), section 2.3: around a point P
+// with normal n, samples Q of the picture within a radius take
 //   max(1 − v², 0)³ · max(v · n − bias, 0) / (v² + ε),  v = (Q − P) / radius,
-// of its light. Samples lie on a spiral of golden angles that is turned from pixel to pixel in a
-// pattern of 4 × 4, which the blur averages. The paper's hierarchy of depths is left out: it saves
-// memory traffic of a GPU.
+// of its light. Samples lie on a spiral of golden angles, turned from pixel to pixel in a pattern
+// of 4 × 4 that the blur averages. The paper's hierarchy of depths is left out: it saves a GPU's
+// memory traffic.
 #include <rastrum/overlay/effects/occlusion.hpp>
 
 #include <algorithm>
@@ -26,8 +26,8 @@ Vec3 position(const OcclusionFrame& f, int x, int y, float depth) {
   return {u * s, v * s, -e};
 }
 
-// Places in radii are float32: what is farther has none. Only small radii are looked at, since
-// depths beyond 10¹² are those of scenes whose radius is as large.
+// Positions in units of the radius are float32. Radii from kSmallRadius on are too small only for
+// depths beyond 10¹², where radii are as large, and are not checked.
 constexpr double kSmallRadius = 1e-18, kMostRadii = 1e30;
 
 double farthest(ImageView<const float> depth) {
@@ -98,7 +98,7 @@ void blur_plain(const OcclusionFrame& f, const float* in, int y, BlurTaps taps, 
 
 void load_each(const float* from, const std::int32_t* places, int count, float* out) noexcept {
   int i = 0;
-  // Four at a time are stored as one.
+  // Compilers make one store of these four.
   for (; i + 4 <= count; i += 4) {
     const float a = from[places[i]], b = from[places[i + 1]], c = from[places[i + 2]],
                 d = from[places[i + 3]];
@@ -115,7 +115,7 @@ Vec3 normal_from_depth(const OcclusionFrame& f, int x, int y) {
   if (!(depth < kFarthest)) return {};
   const Vec3 p = position(f, x, y, depth);
   bool found = true;
-  // Towards growing x or y, whichever side the neighbour lies on.
+  // Towards growing x or y, to the neighbour that is nearer in depth.
   const auto difference = [&](int dx, int dy) {
     Vec3 best{};
     float least = kFarthest;
@@ -133,7 +133,7 @@ Vec3 normal_from_depth(const OcclusionFrame& f, int x, int y) {
   };
   const Vec3 a = difference(1, 0), b = difference(0, 1);
   if (!found) return {};
-  // x to the right and y downwards: b × a looks at the viewer.
+  // x goes right and y down, so b × a faces the viewer.
   const Vec3 n{b.y * a.z - b.z * a.y, b.z * a.x - b.x * a.z, b.x * a.y - b.y * a.x};
   const float square = (n.x * n.x + n.y * n.y) + n.z * n.z;
   if (!(square > 0)) return {};
@@ -146,7 +146,7 @@ OcclusionFrame occlusion_frame(const Surface& surface, const Camera& camera,
   const auto refuse = [](const char* what, double got) {
     throw Error(Errc::invalid_argument, text_of("AmbientOcclusion::", what, ", got ", got));
   };
-  // Beyond, 1 / radius is no float32.
+  // Beyond, 1 / radius may leave the range of float32.
   if (!(options.radius >= 1e-37 && options.radius <= 1e37))
     refuse("radius must lie in [1e-37, 1e37]", options.radius);
   if (options.radius < kSmallRadius && farthest(surface.view_depth) > options.radius * kMostRadii)
@@ -170,14 +170,14 @@ OcclusionFrame occlusion_frame(const Surface& surface, const Camera& camera,
   f.v0 = static_cast<float>(lens.v0 * scale);
   f.per_radius = static_cast<float>(1 / options.radius);
   f.reach_px = static_cast<float>(options.radius / std::fabs(lens.ux));
-  // Farther apart, samples say little of what lies between and miss every cache.
+  // Samples farther apart say little about what lies between, and miss every cache.
   f.most_px = static_cast<float>(std::max(width, height)) / 8;
   f.samples = options.samples;
   f.weight =
       static_cast<float>(options.strength * static_cast<double>(kOcclusionScale) / options.samples);
   const auto count = static_cast<std::size_t>(kPatternSide * options.samples * 2 * kPatternLanes);
   f.pattern.resize(count);
-  // Turned by a Bayer matrix's sixteenths, so that neighbours differ most.
+  // Turns are sixteenths in the order of a Bayer matrix, so that neighbours differ most.
   constexpr int kTurn[4][4] = {{0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
   constexpr double kTau = 6.283185307179586, kGolden = 2.399963229728653;
   std::size_t i = 0;
@@ -186,7 +186,7 @@ OcclusionFrame occlusion_frame(const Surface& surface, const Camera& camera,
       for (const int axis : {0, 1})
         for (int lane = 0; lane < kPatternLanes; ++lane) {
           const int number = row[lane % kPatternSide];
-          // A lattice: of the pattern's pixels each has its own sixteenth of both.
+          // A lattice: each pixel of the pattern has its own sixteenth of both.
           const double turn = number / 16.0, ring = ((11 * number & 15) + 0.5) / 16;
           const double out = (k + ring) / options.samples;
           const auto angle = elementary::sin_cos(kGolden * k + kTau * turn);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ambient occlusion and its blur with Highway, compiled once per instruction set: pixels of a row
-// lie in lanes. It gives the plain kernels' bits (occlusion.cpp), operation by operation.
+// Ambient occlusion and its blur with Highway, per instruction set. A lane is a pixel of a row. It
+// follows the plain kernels (occlusion.cpp) operation by operation, to the same bits.
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "rastrum/overlay/effects/occlusion_simd.cpp"
@@ -25,7 +25,6 @@ struct Position {
   V x, y, z;
 };
 
-/// The pixels of a vector, and what their samples have in common.
 struct Pixels {
   V px, py;  ///< centres
   Position p;
@@ -34,11 +33,10 @@ struct Pixels {
   hn::Vec<I> place;
 };
 
-/// Lens::u and v of the pixels whose centres are (px, py).
 HWY_INLINE V across_of(const OcclusionFrame& f, V px, V py) {
   const D d;
   V along = hn::Mul(hn::Set(d, f.ux), px);
-  // Skewed cameras alone have it, and to add 0 changes no bit.
+  // Only skewed cameras have this term. Adding 0 would change no bit.
   if (f.uy != 0) along = hn::Add(along, hn::Mul(hn::Set(d, f.uy), py));
   return hn::Add(along, hn::Set(d, f.u0));
 }
@@ -59,13 +57,13 @@ HWY_INLINE V sum_of(V a, V b, V c) {
   return hn::Add(hn::Add(a, b), c);
 }
 
-/// b × a and the same of the other components, for normal_from_depth.
+/// The difference to a neighbour, for normal_from_depth. `found`: there is a surface.
 struct Difference {
   V x, y, z;
   hn::Mask<D> found;
 };
 
-/// Towards growing x or y, from the side whose neighbour is nearer in depth: normal_from_depth's.
+/// As in normal_from_depth.
 template <bool kAcross>
 HWY_INLINE Difference difference(const OcclusionFrame& f, const Pixels& at, V depth, V after,
                                  V before) {
@@ -73,7 +71,7 @@ HWY_INLINE Difference difference(const OcclusionFrame& f, const Pixels& at, V de
   const V one = hn::Set(d, 1.0F);
   const V apart_after = hn::Abs(hn::Sub(after, depth)),
           apart_before = hn::Abs(hn::Sub(before, depth));
-  // In plain comparisons a NaN is not near.
+  // Comparisons with NaN are false, so a NaN is never near.
   const auto has_after = hn::Lt(apart_after, hn::Set(d, kFarthest));
   const V least = hn::IfThenElse(has_after, apart_after, hn::Set(d, kFarthest));
   const auto is_before = hn::Lt(apart_before, least);
@@ -82,12 +80,12 @@ HWY_INLINE Difference difference(const OcclusionFrame& f, const Pixels& at, V de
   const V step = hn::IfThenElse(is_before, hn::Neg(one), one);
   const Position q = kAcross ? position(f, hn::Add(at.px, step), at.py, there)
                              : position(f, at.px, hn::Add(at.py, step), there);
-  // p − q is −(q − p), whatever it rounds to.
+  // p − q is −(q − p), also after rounding.
   return {hn::Mul(hn::Sub(q.x, at.p.x), step), hn::Mul(hn::Sub(q.y, at.p.y), step),
           hn::Mul(hn::Sub(q.z, at.p.z), step), found};
 }
 
-/// normal_from_depth of the pixels from (x, y) on, which have neighbours on all sides.
+/// normal_from_depth of the pixels from (x, y) on. All have neighbours on all sides.
 HWY_INLINE void normals_from_depth(const OcclusionFrame& f, int x, int y, V depth, Pixels& at) {
   const D d;
   const float* row = f.depth.row(y) + x;
@@ -106,16 +104,16 @@ HWY_INLINE void normals_from_depth(const OcclusionFrame& f, int x, int y, V dept
   at.nz = hn::IfThenElseZero(has, hn::Div(nz, length));
 }
 
-/// The samples of a vector of pixels, sample after sample.
+/// Sample by sample.
 struct Samples {
   static constexpr int kCapacity = kMostSamples * kPatternLanes;
-  HWY_ALIGN std::int32_t places[kCapacity];  ///< from f.depth.data
+  HWY_ALIGN std::int32_t places[kCapacity];  ///< offsets from f.depth.data
   HWY_ALIGN float depths[kCapacity];
   HWY_ALIGN float u[kCapacity];  ///< Lens; NaN beyond the picture
   HWY_ALIGN float v[kCapacity];
 };
 
-/// `kBorder`: some may lie beyond the picture. Vectors of the pattern begin at `pattern`.
+/// `kBorder`: samples may lie outside the picture. `pattern`: its first vector.
 template <bool kBorder>
 HWY_INLINE void find_samples(const OcclusionFrame& f, const Pixels& at, const float* pattern,
                              Samples& samples) {
@@ -124,7 +122,7 @@ HWY_INLINE void find_samples(const OcclusionFrame& f, const Pixels& at, const fl
   const auto stride = hn::Set(di, f.stride);
   const std::size_t lanes = hn::Lanes(d), count = static_cast<std::size_t>(f.samples) * lanes;
   for (std::size_t i = 0; i < count; i += lanes, pattern += 2 * kPatternLanes) {
-    // Whole numbers below 2^23: sums with them are what those of integers would be.
+    // Whole numbers below 2^23, so sums of them are exact.
     const V dx = hn::Round(hn::Mul(hn::Load(d, pattern), at.reach)),
             dy = hn::Round(hn::Mul(hn::Load(d, pattern + kPatternLanes), at.reach));
     const V qx = hn::Add(at.px, dx), qy = hn::Add(at.py, dy);
@@ -144,7 +142,6 @@ HWY_INLINE void find_samples(const OcclusionFrame& f, const Pixels& at, const fl
   }
 }
 
-/// How much light they take.
 template <bool kPerspective>
 HWY_INLINE V taken(const OcclusionFrame& f, const Pixels& at, const Samples& samples) {
   const D d;
@@ -163,10 +160,10 @@ HWY_INLINE V taken(const OcclusionFrame& f, const Pixels& at, const Samples& sam
     const V vx = hn::Sub(qx, at.p.x), vy = hn::Sub(qy, at.p.y), vz = hn::Add(e, at.p.z);
     const V vv = sum_of(hn::Mul(vx, vx), hn::Mul(vy, vy), hn::Mul(vz, vz));
     const V vn = sum_of(hn::Mul(vx, at.nx), hn::Mul(vy, at.ny), hn::Mul(vz, away));
-    // No comparison with NaN holds, so that this leaves out what lies beyond the picture.
+    // Comparisons with NaN are false, which leaves out samples outside the picture.
     const auto takes =
         hn::And(hn::And(hn::Lt(depth, farthest), hn::Lt(vv, one)), hn::Gt(vn, at.bias));
-    // Mostly none does: surfaces are flat or bend away.
+    // Mostly no sample takes light: surfaces are flat or bend away.
     if (hn::AllFalse(d, takes)) continue;
     const V near = hn::Sub(one, vv);
     const V light = hn::Div(hn::Mul(hn::Mul(hn::Mul(near, near), near), hn::Sub(vn, at.bias)),
@@ -210,12 +207,12 @@ bool occlusion(const OcclusionFrame& f, int y, int begin, int end, float* out) {
     else
       hn::LoadInterleaved3(d, &f.normals(x, y).x, at.nx, at.ny, at.nz);
     const V spread = hn::Set(d, f.reach_px);
-    // The reach is 0 where no surface is, so that such pixels ask for nothing far away.
+    // 0 without a surface, so that such pixels read nothing far away.
     at.reach = hn::IfThenElseZero(
         there, hn::Min(f.perspective ? hn::Div(spread, depth) : spread, hn::Set(d, f.most_px)));
     at.bias = hn::Sub(hn::Set(d, kOcclusionBias), hn::Mul(at.p.z, hn::Set(d, kBiasPerDistance)));
     at.place = hn::Add(column, hn::Set(di, y * f.stride));
-    // An offset is less than the reach, and rounds to at most 1/2 more.
+    // An offset is less than the reach, and rounding adds at most 1/2.
     const int reach = static_cast<int>(hn::GetLane(hn::MaxOfLanes(d, at.reach))) + 2;
     const bool border =
         x < reach || x + lanes + reach > f.depth.width || y < reach || y + reach >= f.depth.height;
@@ -239,7 +236,7 @@ void blur(const OcclusionFrame& f, const float* in, int y, BlurTaps taps, int be
   const V one = hn::Set(d, 1.0F), zero = hn::Zero(d), farthest = hn::Set(d, kFarthest);
   const V per_radius = hn::Set(d, f.per_radius), sharpness = hn::Set(d, kBlurSharpness);
   const int dx = taps.down ? 0 : 1, dy = 1 - dx, width = f.depth.width;
-  // Pixels whose taps reach beyond the picture are left to the plain form.
+  // The plain kernel does pixels whose taps leave the picture.
   const int first = std::min(end, std::max(begin, 2 * dx));
   blur_plain(f, in, y, taps, begin, first, out);
   const bool rows_inside = !taps.down || (y >= 2 && y + 2 < f.depth.height);

@@ -32,7 +32,7 @@ std::vector<std::uint8_t> sides_on(Exec& exec, const MeshView& mesh, double angl
   const std::size_t triangles = mesh.triangle_count();
   const JoinedPoints points =
       weld(exec, mesh.positions.size(), [&](std::uint32_t v) { return mesh.positions.wide(v); });
-  // By the points at its ends, the smaller one first. Sides of what is no triangle stand behind.
+  // By the points at its ends, the smaller first. Sides of degenerate triangles come last.
   std::vector<std::uint64_t> ends(3 * triangles);
   std::vector<Side> sides(3 * triangles);
   const std::uint64_t none = std::uint64_t{points.count} << 32;
@@ -45,7 +45,7 @@ std::vector<std::uint8_t> sides_on(Exec& exec, const MeshView& mesh, double angl
       normals[t] = cross(mesh.positions.wide(vertex[1]) - a, mesh.positions.wide(vertex[2]) - a);
       std::uint64_t point[3];
       for (std::size_t c = 0; c < 3; ++c) point[c] = points.of_vertex[vertex[c]];
-      // Two corners in one place: a line, which lies between no faces.
+      // Two corners coincide: a line, which bounds no faces.
       const bool is_line = point[0] == point[1] || point[1] == point[2] || point[2] == point[0];
       for (std::size_t c = 0; c < 3; ++c) {
         const std::uint64_t from = point[c], to = point[(c + 1) % 3];
@@ -62,7 +62,7 @@ std::vector<std::uint8_t> sides_on(Exec& exec, const MeshView& mesh, double angl
     const std::size_t t = a.place() / 3, u = b.place() / 3;
     if (cuts_faces && mesh.place(t).face == mesh.place(u).face) return false;
     if (angle_degrees == 0) return true;
-    // Neighbours that go round the same way pass their common side in opposite directions.
+    // Neighbours of the same winding traverse their common side in opposite directions.
     const double sign = a.turned() == b.turned() ? -1 : 1;
     return !(sign * dot(normals[t], normals[u]) >=
              cosine * (length(normals[t]) * length(normals[u])));
@@ -70,7 +70,7 @@ std::vector<std::uint8_t> sides_on(Exec& exec, const MeshView& mesh, double angl
   std::vector<std::uint8_t> drawn(triangles);
   for (std::size_t i = 0, end = 0; i < behind; i = end) {
     while (end < behind && ends[end] == ends[i]) ++end;
-    // One triangle alone has a border there, and where three meet there is no angle.
+    // A side of one triangle, or of more than two, is always an edge.
     if (end - i == 2 && !is_edge(sides[i], sides[i + 1])) continue;
     for (std::size_t k = i; k < end; ++k)
       drawn[sides[k].place() / 3] |= static_cast<std::uint8_t>(1U << sides[k].place() % 3);

@@ -54,8 +54,8 @@ std::vector<char32_t> decode_utf8(std::string_view text) {
 }
 
 void append_curve(Point a, Point c, Point b, std::int32_t tolerance_fx8, std::vector<Point>& to) {
-  // Each of n pieces leaves its chord by |a − 2 c + b| / (4 n²) at most. That length is at most √2
-  // times the vector's larger component; 3/2 is taken.
+  // Each of n pieces deviates from its chord by at most |a − 2 c + b| / (4 n²). That length is at
+  // most √2 times its larger component; 3/2 is taken.
   const std::int64_t ax = a.x, ay = a.y, bx = b.x, by = b.y, cx = c.x, cy = c.y;
   const std::int64_t bend =
       std::max(std::abs(ax - 2 * cx + bx), std::abs(ay - 2 * cy + by)) * 3 / 2;

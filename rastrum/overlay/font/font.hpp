@@ -11,7 +11,7 @@
 namespace rastrum::overlay {
 
 struct Glyph {
-  char32_t code;  ///< 0: the box that stands for what is not here
+  char32_t code;  ///< 0: the box that stands for missing characters
   std::int32_t advance;
   std::int32_t points;  ///< where its contours begin in the table of points
 };
@@ -21,29 +21,25 @@ struct FontMetrics {
 };
 [[nodiscard]] FontMetrics font_metrics();
 
-/// The glyph of a code point; the box where there is none.
+/// The glyph of a code point, or the box.
 [[nodiscard]] const Glyph& glyph_of(char32_t code);
 [[nodiscard]] inline bool is_missing(const Glyph& glyph) {
   return glyph.code == 0;
 }
 
-/// The code points of UTF-8; U+FFFD for each byte that belongs to none (overlong forms, surrogates
-/// and what lies beyond U+10FFFF are none).
+/// The code points of UTF-8 text; U+FFFD for each byte that belongs to none, as of overlong forms,
+/// surrogates and values beyond U+10FFFF.
 [[nodiscard]] std::vector<char32_t> decode_utf8(std::string_view text);
 
-/// Calls contour(points) for each contour, as closed polygons in 1/256 px: y down, the origin of
-/// the glyph at (0, 0), its em `em_fx8` high; no curve is farther than `tolerance_fx8` from its
-/// chords.
+/// Calls contour(points) for each contour, a closed polygon in 1/256 px: y down, the glyph's origin
+/// at (0, 0), its em `em_fx8` high. Curves lie within `tolerance_fx8` of the chords.
 template <class Contour>
 void for_each_contour(const Glyph& glyph, std::int32_t em_fx8, std::int32_t tolerance_fx8,
                       Contour&& contour);
 
-/// The table's numbers from `glyph.points` on.
 [[nodiscard]] const std::int16_t* glyph_points(const Glyph& glyph);
 
-// ---
-
-/// Appends the curve from `a`, which is there already, by `c` to `b`.
+/// Appends the curve from `a`, already there, with control point `c` to `b`.
 void append_curve(Point a, Point c, Point b, std::int32_t tolerance_fx8, std::vector<Point>& to);
 
 template <class Contour>
@@ -63,7 +59,7 @@ void for_each_contour(const Glyph& glyph, std::int32_t em_fx8, std::int32_t tole
     };
     const auto on = [&](int i) { return (p[2 * (i % count)] & 1) != 0; };
     const auto middle = [](Point a, Point b) { return Point{(a.x + b.x) >> 1, (a.y + b.y) >> 1}; };
-    // Between two points off the curve lies one on it, in the middle. A contour begins on it.
+    // Between two points off the curve, their middle lies on it. A contour begins on the curve.
     points.clear();
     const Point start = on(0)           ? at(0)
                         : on(count - 1) ? at(count - 1)

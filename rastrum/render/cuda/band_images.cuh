@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The targets of a band of rows on a device: copies of the caller's host arrays or, in place, the
-// caller's own. Results come back through pinned memory, so that the host does not wait for each;
-// its threads copy them from there to the caller's arrays.
+// caller's own. Results return through pinned memory, so that the host need not wait for each; its
+// threads copy them to the caller.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@
 
 namespace rastrum::raster {
 
-/// A band of one image; empty if the caller has none.
+/// Empty if the caller has no such image.
 template <class T>
 class BandImage {
  public:
@@ -35,15 +35,14 @@ class BandImage {
       return {host_.row(view_.y0), width, view_.y1 - view_.y0, host_.stride};
     return {pixels_.data(), width, view_.y1 - view_.y0, width};
   }
-  /// Starts the copy to the host, which is complete once the device has been waited for. Does not
-  /// wait.
+  /// Starts the copy to the host and does not wait.
   void store() {
     const std::size_t bytes = pixels_.size() * sizeof(T);
     if (bytes == 0) return;
     staged_ = parallel::pinned_buffer(exec_, bytes);
     parallel::cuda_system::copy(exec_.stream(), staged_.data(), pixels_.data(), bytes);
   }
-  /// Afterwards: copies to the caller.
+  /// Copies to the caller, once the device has been waited for.
   void deliver(parallel::Threads& threads) {
     if (staged_.empty()) return;
     constexpr std::size_t kRowGrain = 16;
@@ -75,7 +74,7 @@ class BandImage {
 /// A band of all targets, with their contents if the frame draws over or loads them.
 class BandImages {
  public:
-  /// `resolves`: all targets are wanted; otherwise only those that tests read.
+  /// `resolves`: all targets are wanted, else only those that tests read.
   BandImages(parallel::Cuda& exec, const FrameRequest& request, Rect view, bool resolves)
       : exec_(exec),
         color8_(of(exec, request, request.targets.color8, view, resolves)),
@@ -90,8 +89,8 @@ class BandImages {
     return {d.data, d.width, d.height, d.stride};
   }
 
-  /// Fills all targets; adds how many pixels hold a surface to *covered, in device memory. If *held
-  /// is not 0 it leaves them (resolve_surface) and must be called again.
+  /// Fills all targets; adds the number of covered pixels to *covered, in device memory. If *held
+  /// is not 0 it leaves the targets (resolve_surface) and must be called again.
   template <class Shade>
   void resolve(const FrameRequest& request, const Shade& shade, const DeviceSurface& surface,
                std::uint64_t* covered, const std::uint64_t* held) {
@@ -104,7 +103,7 @@ class BandImages {
     ids_.store();
     keys_.store();
   }
-  /// Copies the results to the caller, once the device has been waited for.
+  /// As BandImage::deliver.
   void deliver(parallel::Threads& threads) {
     color8_.deliver(threads);
     color_.deliver(threads);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A frame of the façade on a device. First the host's arrays are copied over. Then, band by band of
-// rows, a SurfaceDrawer draws keys, and they are resolved: on the device (band_images.cuh) or by
-// the host's threads (host_band.cuh). This file joins the floors of pieces and of layers, which lie
-// below it.
+// A frame of the façade on a device. The host's arrays are copied over. Then, for each band of
+// rows, a SurfaceDrawer draws keys, and the device (band_images.cuh) or the host's threads
+// (host_band.cuh) resolve them. This file joins the floors of pieces and of layers.
 #pragma once
 
 #include <algorithm>
@@ -76,7 +75,7 @@ class DeviceRasterizer final : public CudaRasterizer {
  private:
   using Exec = parallel::Cuda;
 
-  /// The state of a frame; begin_frame fills it in this order.
+  /// begin_frame fills it in this order.
   struct Frame {
     Frame(FrameRequest& r, Exec& exec, KeptArrays<Exec>& kept)
         : request(r), uploads(exec, kept, r.device.in_place) {}
@@ -98,19 +97,18 @@ class DeviceRasterizer final : public CudaRasterizer {
     SamplePattern samples;
     DeviceSplit split;
     std::optional<DeviceScene<Exec>> scene;
-    FrameGeometry geometry;  ///< for the host
+    FrameGeometry geometry;  ///< for the host's shading
     std::optional<parallel::ScratchPool<ShaderScratch>> shaders;
     transparency::SceneLayers layers;
     std::uint64_t bands = 0, listed = 0;
   };
 
-  /// The counts of a band, in the order of the device's array.
+  /// In the order of the device's array.
   struct BandCounts {
     BandSums sums{};
     decltype(transparency::LayerQueueCounts::of) layers{};
   };
 
-  /// A band that is being drawn, on the device.
   struct Band {
     Band(Exec& exec, const Frame& frame, Rect rows)
         : view(rows),
@@ -136,7 +134,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     HostBand::Keys keys;   ///< a plane for each sample
     HostBand::Counts overdraw;
     BandImages images;
-    parallel::DeviceBuffer<Vec4> colors;         ///< in the places of the keys
+    parallel::DeviceBuffer<Vec4> colors;         ///< at the places of the keys
     parallel::DeviceBuffer<std::uint64_t> sums;  ///< BandCounts
     parallel::DeviceBuffer<Piece> left_room;     ///< empty: pieces are not queued
     DeviceSurface surface;
@@ -165,7 +163,7 @@ class DeviceRasterizer final : public CudaRasterizer {
                   {0, y, request.width, std::min(y + frame.split.band_rows, request.height)});
     } catch (const Error& error) {
       settle();
-      // The host finds out which index was out of range.
+      // The host finds the index that was out of range.
       if (error.code() == Errc::invalid_argument && !request.device.in_place)
         check_indices(request.draws, request.names);
       throw;
@@ -174,7 +172,7 @@ class DeviceRasterizer final : public CudaRasterizer {
       throw;
     }
     end_frame(frame);
-    // The first launch of a kernel that needs more local memory makes the driver set it aside.
+    // The driver reserves local memory when a kernel that needs more is first launched.
     if (free_bytes_ != 0 && !has_drawn_)
       free_bytes_ = parallel::driver_status().free_bytes + exec_.memory()->held();
     has_drawn_ = true;
@@ -185,8 +183,8 @@ class DeviceRasterizer final : public CudaRasterizer {
     exec_.settle();
     arrays_.forget();
   }
-  /// The limit of scratch in bytes, without copies of arrays: the one asked for, or three quarters
-  /// of what is free. 0: no limit.
+  /// The limit of scratch in bytes, without copies of arrays: as asked for, or three quarters of
+  /// what is free. 0: none.
   [[nodiscard]] std::uint64_t limit() const {
     if (memory_limit_ != 0) return memory_limit_;
     return free_bytes_ == 0
@@ -203,7 +201,6 @@ class DeviceRasterizer final : public CudaRasterizer {
            (f.resolves && !f.request.device.in_place ? DeviceTargets::bytes_of(targets) : 0);
   }
 
-  /// Copies arrays over and prepares all that bands share.
   void begin_frame(Frame& f) {
     FrameRequest& request = f.request;
     if (request.device.after)
@@ -236,11 +233,10 @@ class DeviceRasterizer final : public CudaRasterizer {
     });
   }
 
-  /// The flags of pieces that the drawer leaves to others.
   [[nodiscard]] static std::uint32_t skipped(const Frame& f) {
     return (f.has_layers ? kTranslucent : 0) | (f.look->has_test() ? kMayDrop : 0);
   }
-  /// How many primitives may leave such pieces; 0: the drawer queues none.
+  /// How many primitives may leave such pieces. 0: the drawer queues none.
   [[nodiscard]] std::uint64_t left_primitives(const Frame& f) const {
     if (!kind_.leaves_pieces) return 0;
     std::uint64_t n = 0;
@@ -249,7 +245,6 @@ class DeviceRasterizer final : public CudaRasterizer {
     return n;
   }
 
-  /// Clears the band, or loads the keys of the passes before.
   void begin_band(Frame& f, Band& band) {
     if (f.request.pass.load)
       host_.load(exec_, f.request, band.view, band.keys);
@@ -273,7 +268,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     drawer_->draw(exec_, *f.scene, band.surface, f.split, skipped(f), band.left(), colors,
                   band.sums.data());
     if (band.left_room.size() == 0 || !finish_band(f, band, test, true)) {
-      // There is no queue, or it was too small: pieces are made again, in lists that fit into
+      // Without a queue, or if it was too small, pieces are made again, in lists that fit into
       // memory.
       if (band.left_room.size() > 0) {
         ++f.listed;
@@ -286,9 +281,9 @@ class DeviceRasterizer final : public CudaRasterizer {
     f.watch.lap(f.stats, "shade");
   }
 
-  /// The work after the drawer: tested pieces, colours and layers, and the targets. `by_queues`:
-  /// the pieces that the drawer left lie in the band's queue, and the only wait is for the picture.
-  /// Returns false if the queue was too small; nothing of what was left is drawn then.
+  /// The work after the drawer: tested pieces, colours, layers and targets. `by_queues`: pieces
+  /// left by the drawer lie in the band's queue, and the only wait is for the picture. Returns
+  /// false, with none of these drawn, if the queue was too small.
   bool finish_band(Frame& f, Band& band, const TestOnDevice& test, bool by_queues) {
     const std::uint32_t layers = f.has_layers ? kTranslucent : 0;
     if (f.look->has_test()) {
@@ -313,7 +308,6 @@ class DeviceRasterizer final : public CudaRasterizer {
     return done;
   }
 
-  /// Waits for all the work of the band.
   [[nodiscard]] BandCounts wait_for(const Band& band) {
     static_assert(sizeof(BandCounts) % sizeof(std::uint64_t) == 0);
     BandCounts counts;
@@ -328,7 +322,7 @@ class DeviceRasterizer final : public CudaRasterizer {
     drawer_->end_band(sums);
     f.stats.fragments += sums[kFragmentsSum];
     f.stats.pixels_covered += sums[kCoveredSum];
-    // Each band sets up all primitives, so the first one's counts are the frame's.
+    // Each band sets up all primitives, so the first band's counts are the frame's.
     if (f.bands++ > 0) return;
     FrameStats::Triangles& t = f.stats.triangles;
     t.dropped = sums[kDroppedSum];
@@ -388,8 +382,8 @@ class DeviceRasterizer final : public CudaRasterizer {
     return end(done);
   }
 
-  /// Queues of a band's layers. They have room for a quarter more records than in the frame before,
-  /// or for a guess.
+  /// Queues of a band's layers, with room for a quarter more records than in the last frame, or for
+  /// a guess.
   template <class Shade>
   [[nodiscard]] transparency::LeftLayers queues_of(const Frame& f, Band& band,
                                                    const Shade& shade) const {
@@ -411,7 +405,7 @@ class DeviceRasterizer final : public CudaRasterizer {
             band.held()};
   }
 
-  /// FragmentColors::shade; must not outlive the arrays of `shade`.
+  /// As FragmentColors::shade. It must not outlive the arrays of `shade`.
   template <class Shade>
   [[nodiscard]] auto shade_fragments(const SurfaceView& keys, const Shade& shade) {
     return [this, keys, shade](std::span<const std::uint32_t> element,
@@ -420,7 +414,6 @@ class DeviceRasterizer final : public CudaRasterizer {
     };
   }
 
-  /// Fills in the statistics.
   void end_frame(Frame& f) {
     FrameStats& stats = f.stats;
     raster::end_frame(f.totals, stats);
@@ -451,11 +444,11 @@ class DeviceRasterizer final : public CudaRasterizer {
   std::unique_ptr<SurfaceDrawer> drawer_;
   SurfaceDrawer::Kind kind_;
   std::uint64_t memory_limit_;
-  /// The device's free memory and what this object holds; read again after the first frame. 0:
+  /// The device's free memory and what this object holds, read again after the first frame; 0:
   /// unknown.
   std::uint64_t free_bytes_ = parallel::driver_status().free_bytes;
   bool has_drawn_ = false;
-  std::uint64_t layer_records_ = 0;  ///< most of a band of the frame before that had layers
+  std::uint64_t layer_records_ = 0;  ///< the most of a band, in the last frame with layers
   parallel::Threads& threads_;
   Exec exec_;
   parallel::Buffer<std::byte> counts_;  ///< BandCounts, pinned

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The host's share of a band of a device's frame. It uploads the keys of the passes before and
-// fetches the overdraw. If a target or the shader has no device form (shading.cuh), it resolves the
-// keys that come back, by resolve_block.
+// The host's share of a band of a device's frame. It uploads the keys of earlier passes and fetches
+// the overdraw. If a target or the shader has no device form (shading.cuh), it also resolves the
+// keys.
 #pragma once
 
 #include <algorithm>
@@ -29,13 +29,12 @@ class HostBand {
   HostBand(MemoryAccount& memory, parallel::Threads& threads)
       : threads_(threads), keys_(memory), overdraw_(memory) {}
 
-  /// Uploads the targets' keys.
   void load(parallel::Cuda& exec, const FrameRequest& request, Rect view, Keys& keys) {
     load_keys(request, view, surface(view));
     copy(exec, keys.data(), keys_.data(), keys.size());
   }
 
-  /// Adds to the target, which begin_frame has cleared or a pass before has filled.
+  /// Adds to the target, which begin_frame cleared or an earlier pass filled.
   void store_overdraw(parallel::Cuda& exec, const Targets& targets, Rect view,
                       const Counts& overdraw) {
     overdraw_.reserve(overdraw.size());
@@ -50,7 +49,7 @@ class HostBand {
     });
   }
 
-  /// Fills all targets. Returns how many pixels hold a surface.
+  /// Fills all targets. Returns how many pixels show a surface.
   [[nodiscard]] std::uint64_t resolve(parallel::Cuda& exec, const FrameRequest& request,
                                       const FrameGeometry& geometry, Rect view, const Keys& keys,
                                       parallel::ScratchPool<ShaderScratch>& shaders) {
@@ -75,7 +74,6 @@ class HostBand {
     parallel::cuda_system::copy(exec.stream(), to, from, n * sizeof(T));
     exec.wait();
   }
-  /// Calls f(block row) on all threads.
   template <class F>
   void for_each_row(Rect view, F&& f) {
     parallel::for_each_index(threads_, static_cast<std::size_t>(block_rows(view)),
@@ -87,8 +85,8 @@ class HostBand {
   }
 
   parallel::Threads& threads_;
-  ScratchBuffer<std::uint64_t> keys_;      ///< in the order that the device has
-  ScratchBuffer<std::uint32_t> overdraw_;  ///< in the same order
+  ScratchBuffer<std::uint64_t> keys_;      ///< in the device's order
+  ScratchBuffer<std::uint32_t> overdraw_;  ///< in the device's order
 };
 
 }  // namespace rastrum::raster

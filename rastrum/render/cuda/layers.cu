@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The layers of a CUDA device, instantiated. Tests compile this file as C++, for the CPU.
+// Instantiates the layers of a CUDA device. Tests compile this file as C++, for the CPU.
 #include <rastrum/render/cuda/layers.cuh>
 
 namespace rastrum::transparency {

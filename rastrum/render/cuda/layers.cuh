@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The layers of each pair of shader and test that raster::DeviceShading has, instantiated by
-// layers.cu: nvcc takes as long for them as for the rest of a frame.
+// The layers of each pair of shader and test in raster::DeviceShading, in a file of their own
+// (layers.cu), because nvcc takes as long for them as for the rest of a frame.
 #pragma once
 
 #include <rastrum/parallel/cuda/words.cuh>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Makes the frame of a device (frame.cuh) around what draws its surfaces.
+// Makes the frame of a device (frame.cuh) around a drawer of its surfaces.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace rastrum {
 
-/// make_cuda_rasterizer, by `drawer`. The one function that who adds a way to draw needs.
+/// make_cuda_rasterizer with another `drawer`: all that a new way to draw needs.
 [[nodiscard]] std::unique_ptr<CudaRasterizer> make_device_rasterizer(
     std::unique_ptr<raster::SurfaceDrawer> drawer, std::uint64_t memory_limit,
     MemoryAccount& memory, parallel::Threads& threads);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The rasterizer of a CUDA device with what blends its layers (layers.cu), instantiated. Tests
-// compile this file as C++, for the CPU.
+// Instantiates the rasterizer of a CUDA device without its layers (layers.cu). Tests compile this
+// file as C++, for the CPU.
 #include <utility>
 
 #include <rastrum/raster/cuda/by_size.cuh>

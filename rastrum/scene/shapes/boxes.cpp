@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A grid of boxes: sharp edges, flat faces, many small occluders. Corners are shared by index
-// (8 per box, closed); normals and texture coordinates have indices of their own.
+// A grid of boxes: sharp edges, flat faces, many small occluders. Corners are shared by index (8
+// per box, closed); normals and texture coordinates have their own indices.
 
 #include <rastrum/core/float_scope.hpp>
 #include <rastrum/scene/shapes/require.hpp>

@@ -2,8 +2,8 @@
 // The gyroid sin x cos y + sin y cos z + sin z cos x = 0 in the cube [−1, 1]³ by marching cubes, as
 // three expansions: crossed grid edges → vertices, crossed cells, cells → triangle corners.
 //
-// The front faces positive values. Vertices are shared: one per crossed grid edge. Every edge has
-// two triangles but for those on the faces of the cube, where the surface is cut off.
+// The front faces positive values. A crossed grid edge has one shared vertex. Every edge has two
+// triangles, except where the cube's faces cut the surface off.
 
 #include <algorithm>
 #include <cstddef>
@@ -42,8 +42,8 @@ class Grid {
   [[nodiscard]] double value(std::size_t x, std::size_t y, std::size_t z) const {
     return sin_[x] * cos_[y] + sin_[y] * cos_[z] + sin_[z] * cos_[x];
   }
-  /// Many grid points lie exactly on the surface; where their values end up by rounding, 1e-16 on
-  /// either side, must not decide the topology.
+  /// Many grid points lie exactly on the surface, where rounding of 1e-16 must not decide the
+  /// topology.
   [[nodiscard]] bool inside(std::size_t x, std::size_t y, std::size_t z) const {
     return value(x, y, z) < 1e-9;
   }
@@ -67,8 +67,8 @@ struct Cell {
   unsigned inside = 0;
 };
 
-/// The point where the surface crosses a grid edge, by linear interpolation. It stays off the ends,
-/// so that no triangle collapses where the surface passes through a grid point.
+/// Where the surface crosses a grid edge, linearly. It stays off the ends, so that no triangle
+/// collapses.
 Vec3d crossing(const Grid& grid, std::size_t edge) {
   const std::size_t n = grid.points(), axis = edge % 3, p = edge / 3;
   const std::size_t x = p % n, y = p / n % n, z = p / n / n;
@@ -86,7 +86,7 @@ Vec3d gradient(Vec3d p, double scale) {
   return {cx * cy - sz * sx, cy * cz - sx * sy, cz * cx - sy * sz};
 }
 
-/// All crossed grid edges, ascending: the position of an edge in this list is its vertex.
+/// All crossed grid edges, ascending. An edge's place in this list is its vertex.
 parallel::Buffer<std::size_t> crossed_edges(parallel::Threads& exec, const Grid& grid) {
   const std::size_t n = grid.points();
   return parallel::expand_masked(

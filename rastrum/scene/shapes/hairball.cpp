@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Crossing curves in the unit ball as thin ribbons: long thin triangles, great depth complexity and
-// no order; the worst case of transparency (paper 4). After the hairball of Laine and Karras, 2010,
-// in what it is, not in its data.
+// Crossing curves in the unit ball as thin ribbons: long thin triangles, great depth complexity, no
+// order; the worst case of transparency (paper 4). After the hairball of Laine and Karras, 2010,
+// without its data.
 
 #include <algorithm>
 
@@ -15,15 +15,15 @@
 namespace rastrum::shapes {
 namespace {
 
-/// A cubic from one random point of the sphere to another; its inner control points lie anywhere in
-/// the ball, and so the whole curve does.
+/// A cubic between random points of the sphere. Its inner control points lie in the ball, and so
+/// does the curve.
 struct Strand {
   Vec3d p[4] = {};
 
   Strand(Random& random, double radius) {
     p[0] = random.unit_vector() * radius;
     for (int i : {1, 2}) {
-      // Drawn in statements of their own: compilers order the operands of a product as they like.
+      // In separate statements, because compilers choose the order of a product's operands.
       const double r = radius * elementary::cbrt(random.uniform());
       p[i] = random.unit_vector() * r;
     }
@@ -69,7 +69,7 @@ Mesh hairball(int strands, int segments, float width, std::uint64_t seed) {
       [&](std::size_t strand) {
         Random random(seed, strand);
         const Strand curve(random, 1 - half);
-        // The ribbon's side is carried along the curve with as little twist as it can have.
+        // The ribbon's side follows the curve with the least twist.
         Vec3d side = random.unit_vector();
         Vec3d along = random.unit_vector();
         for (std::size_t i = 0; i < rows; ++i) {

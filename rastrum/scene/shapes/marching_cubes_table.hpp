@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which triangles the surface has in a cell whose corners lie inside or outside: derived, not
-// typed.
+// The triangles of a cell, by which of its corners lie inside: derived, not typed.
 //
-// On each face of the cell every run of inside corners is cut off by a segment of its own; so
-// inside corners that meet only diagonally stay apart. The rule sees the face alone, so both cells
-// of a face agree and the surface has no hole. The segments close to loops; a loop becomes the
-// first fan whose diagonals all leave the faces, so that no diagonal can coincide with the
-// neighbour's. Source: Lorensen and Cline, "Marching cubes", 1987; the ambiguity: Dürst, 1988.
+// On each face of the cell a segment cuts off every run of inside corners, so those that meet only
+// diagonally stay apart. The rule sees the face alone, so both its cells agree and the surface has
+// no hole. Segments close to loops. A loop becomes the first fan whose diagonals leave the faces,
+// so that none coincides with the neighbour's. Source: Lorensen and Cline, "Marching cubes", 1987;
+// the ambiguity: Dürst, 1988.
 #pragma once
 
 #include <array>
@@ -22,7 +21,7 @@ struct CellTriangles {
   std::int8_t edge[5][3] = {};  ///< counter-clockwise as seen from outside
 };
 
-/// The cell's corner from which an edge starts, along its axis.
+/// The corner where an edge starts, along its axis.
 [[nodiscard]] constexpr int edge_start(int edge) {
   const int k = edge % 4;
   switch (edge / 4) {
@@ -54,7 +53,7 @@ constexpr int edge_between(int a, int b) {
   }
 }
 
-/// Bit f for each of the two faces on which an edge lies.
+/// Bit f for each of the two faces of an edge.
 constexpr std::array<unsigned, 12> faces_of_edges() {
   std::array<unsigned, 12> faces{};
   for (unsigned f = 0; f < 6; ++f)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The colour that shapes of many parts give to each part.
+// The colours of the parts of a shape.
 #pragma once
 
 #include <rastrum/vec.hpp>

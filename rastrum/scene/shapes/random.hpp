@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The random numbers of the procedural shapes. Own, because the standard library's distributions
-// differ between implementations and a shape must be the same on every machine.
-// Source: SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).
+// Random numbers of procedural shapes. Own, because the standard library's distributions differ
+// between implementations and a shape must be the same everywhere. Source: SplitMix64 (Steele, Lea,
+// Flood, "Fast splittable pseudorandom number generators", 2014).
 #pragma once
 
 #include <cmath>
@@ -16,7 +16,7 @@ namespace rastrum::shapes {
 
 class Random {
  public:
-  /// A `stream` of its own per item (strand, triangle) makes items independent of each other.
+  /// A `stream` per item (strand, triangle) makes items independent of each other.
   explicit Random(std::uint64_t seed, std::uint64_t stream = 0)
       : state_(mix(seed) + mix(stream ^ 0x6A09E667F3BCC909U)) {}
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Argument checks of the procedural shapes: what the caller sees names the shape and the parameter.
+// Argument checks of procedural shapes. Messages name the shape and the parameter.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@ namespace rastrum::shapes {
 void require_range(std::string_view shape, std::string_view parameter, double value, double low,
                    double high);
 
-/// Throws Error{invalid_argument} naming both parameters unless the mesh's vertices and triangles
-/// can be numbered by 32 bits.
+/// Throws Error{invalid_argument} naming both parameters unless 32 bits number the mesh's vertices
+/// and triangles.
 void require_size(std::string_view shape, std::string_view parameters, double vertices);
 
 }  // namespace rastrum::shapes

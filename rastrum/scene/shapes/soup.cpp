@@ -19,7 +19,8 @@ Mesh soup(int count, float min_size, float max_size, std::uint64_t seed) {
   Mesh mesh;
   mesh.name = "soup";
   mesh.positions.resize(3 * static_cast<std::size_t>(count));
-  // No vertex is farther from the centroid than 2/3 of a median, which no edge exceeds.
+  // No vertex is farther from the centroid than 2/3 of a median, and no median is longer than the
+  // longest edge.
   const double room = 1 - static_cast<double>(max_size) * 2 / 3;
   for (std::size_t t = 0; t < static_cast<std::size_t>(count); ++t) {
     Random random(seed, t);
@@ -30,7 +31,8 @@ Mesh soup(int count, float min_size, float max_size, std::uint64_t seed) {
       b = random.uniform(double{min_size}, double{max_size});
       c = random.uniform(double{min_size}, double{max_size});
     } while (2 * std::max({a, b, c}) > a + b + c);
-    // One corner at 0, one at a on the first axis, the third at distance b from 0, c from it.
+    // One corner at 0, one at a on the first axis; the third is b from the first and c from the
+    // second.
     const double x = (a * a + b * b - c * c) / (2 * a);
     const double y = std::sqrt(std::max(b * b - x * x, 0.0));
     const Vec3d axis = random.unit_vector();

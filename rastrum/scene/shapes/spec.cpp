@@ -22,7 +22,7 @@ struct Parameter {
   const char* value;  ///< the default
 };
 
-/// Values of a shape's parameters, as text, in the table's order.
+/// As text, in the table's order.
 class Arguments {
  public:
   Arguments(const char* shape, std::span<const Parameter> parameters,
@@ -69,7 +69,6 @@ requires std::constructible_from<Geometry, G> Scene scene_of(G geometry) {
   return scene;
 }
 
-/// The scene of a shape's function, which takes the arguments in their order.
 template <class Made, class... Args, std::size_t... kPlaces>
 Scene call(Made (*shape)(Args...), const Arguments& a, std::index_sequence<kPlaces...>) {
   return scene_of(shape(a.get<Args>(kPlaces)...));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Latitude-longitude sphere. The positions are shared across the seam and at the poles, so that the
-// mesh is closed by index; the texture coordinates, which jump there, have indices of their own.
+// Latitude-longitude sphere. Positions are shared across the seam and at the poles, so the mesh is
+// closed by index. Texture coordinates jump there and have their own indices.
 
 #include <numbers>
 #include <vector>

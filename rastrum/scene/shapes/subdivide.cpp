@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Splits every triangle in 4 at its edges' midpoints. Which triangles share an edge is found by
-// sorting the edges' vertex pairs; the order of the sorted edges is that of the new vertices.
+// Splits every triangle in 4 at its edges' midpoints. Sorting the edges' vertex pairs finds shared
+// edges and gives the order of new vertices.
 //
-// Attributes with indices of their own have edges of their own: a seam of the texture coordinates
-// stays one, although the positions beside it are shared.
+// Attributes with their own indices have their own edges: a seam of texture coordinates stays one,
+// although positions beside it are shared.
 
 #include <algorithm>
 #include <bit>
@@ -28,7 +28,7 @@ using Indices = std::vector<std::uint32_t>;
 /// Side 3t + c of an index list runs from corner c of triangle t to the next corner.
 struct Edges {
   parallel::Buffer<std::uint64_t> ends;  ///< smaller vertex << shift | larger vertex, ascending
-  Indices of_side;                       ///< the edge on which each side lies
+  Indices of_side;                       ///< the edge of each side
   int shift = 0;
 
   [[nodiscard]] std::size_t first(std::size_t edge) const { return ends[edge] >> shift; }
@@ -102,8 +102,8 @@ Indices split(parallel::Threads& exec, const Indices& indices, const Edges& edge
                                        " times would have " + what);
 }
 
-/// The vertices after `times` splits, by V' = V + E, E' = 2 E + 3 T, T' = 4 T: an upper bound, and
-/// the number itself where no two triangles share more than one edge.
+/// The vertices after `times` splits: V' = V + E, E' = 2 E + 3 T, T' = 4 T. An upper bound, exact
+/// where no two triangles share more than one edge.
 void require_numberable(const Mesh& mesh, int times, std::size_t vertices, std::size_t edges) {
   std::uint64_t v = vertices, e = edges, t = mesh.triangle_count();
   for (int k = 0; k < times; ++k) {
@@ -130,8 +130,8 @@ void for_each_attribute(Mesh& mesh, F&& f) {
   if (!mesh.colors.empty()) f(mesh.colors, "colour");
 }
 
-/// Makes what the spans of a MeshView leave open explicit: every corner has a position index, and
-/// attributes beside the positions are as many as these.
+/// Makes explicit what a MeshView leaves open: every corner has a position index, and attributes
+/// without indices are as many as positions.
 void normalize_layout(Mesh& mesh) {
   const std::size_t corners = 3 * mesh.triangle_count();
   if (mesh.indices.empty()) {
@@ -168,7 +168,7 @@ void normalize_layout(Mesh& mesh) {
   mesh.face_materials.resize(corners / 3);
 }
 
-/// Four triangles have their face's; corners blend as vertices do.
+/// Four triangles keep their face's; corners blend as vertices do.
 void split_scalars(parallel::Threads& exec, NamedScalars& s, const Edges& edges) {
   if (s.per == Per::vertex) {
     add_midpoints(exec, s.values, edges);
@@ -222,7 +222,7 @@ Mesh subdivide(const Mesh& mesh, int times) {
   const FloatScope floats;
   require_range("subdivide", "times", times, 0, 16);
   if (times == 0) return mesh;
-  // Sides of the last split are numbered by 32 bits; this also keeps the arithmetic below 2⁶⁴.
+  // 32 bits number the sides of the last split. This also keeps the arithmetic below 2⁶⁴.
   const double triangles = static_cast<double>(mesh.triangle_count()) * std::ldexp(1.0, 2 * times);
   if (triangles > 4.0 * 4294967295.0 / 3.0)
     too_large(mesh, times, "more than 5.7 billion triangles");

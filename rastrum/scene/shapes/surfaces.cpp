@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Spheres, cylinders and discs as they are (surfaces.hpp), at random in the cube [−1, 1]³, each in
-// the colour of its place. The tube is torus_knot.cpp's.
+// Random quadrics (surfaces.hpp) in the cube [−1, 1]³: spheres, cylinders and discs, each in the
+// colour of its place. torus_knot.cpp has the tube.
 
 #include <algorithm>
 #include <utility>
@@ -21,13 +21,13 @@ Vec3d place_in(Random& random, double room) {
   return {x, y, random.uniform(-room, room)};
 }
 
-/// Radii of `count` primitives are drawn so that each size covers about as much of the picture.
+/// Radii are drawn so that each size covers about as much of the picture.
 double radius_between(Random& random, double least, double most) {
   const double u = random.uniform();
   return least * most / (most + (least - most) * u);
 }
 
-/// Spheres or discs. also(random, made) draws what else one has.
+/// Spheres or discs. also(random, made) draws their other attributes.
 template <class Round, class Also>
 Round round_ones(const char* shape, int count, float min_radius, float max_radius,
                  std::uint64_t seed, const Also& also) {

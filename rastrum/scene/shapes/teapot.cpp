@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tessellates the teapot's Bézier patches. Neighbouring patches meet without a crack: on a shared
-// edge both evaluate the same cubic, and the evaluation is the same bits in both directions.
+// Tessellates the teapot's Bézier patches. Neighbours meet without a crack: on a shared edge both
+// evaluate the same cubic, to the same bits in both directions.
 
 #include <rastrum/scene/shapes/teapot_patches.hpp>
 
@@ -47,8 +47,8 @@ Vec3 y_up(Vec3d p) {
 Vec3d outward(const BezierPatch& patch, const Basis& row, const Basis& column) {
   const Vec3d down = evaluate(patch, row.slope, column.weight);
   Vec3d n = cross(evaluate(patch, row.weight, column.slope), down);
-  // At the tips of knob and bottom the first row is one point; the limit of the column's direction
-  // there is the mixed derivative.
+  // At the tips of knob and bottom the first row is one point; there the column's direction tends
+  // to the mixed derivative.
   if (dot(n, n) < 1e-18) n = cross(evaluate(patch, row.slope, column.slope), down);
   return normalize(n);
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The control points of the teapot that Martin Newell designed at the University of Utah in 1975,
-// in the proportions in which it became known (Blinn's, 1/1.3 of the height). The data are in the
-// public domain; told in F. Crow, "The Origins of the Teapot", IEEE CG&A 7(1), 1987.
+// in the proportions that became known (Blinn's, 1/1.3 of the height). Public domain; told in F.
+// Crow, "The Origins of the Teapot", IEEE CG&A 7(1), 1987.
 //
-// The usual listing of 306 points and 32 patches is highly redundant: rim, body, lid and bottom are
-// profiles turned in quarters, handle and spout are mirrored halves. Here stands what is left of
-// the listing without it, in Newell's coordinates: z up, the spout toward +x, base at z = 0.
-// (The listing has 0.78 for one coordinate of the rim whose seven mirror images are 0.784.)
+// The usual listing of 306 points and 32 patches is redundant: rim, body, lid and bottom are
+// profiles turned in quarters, handle and spout mirrored halves. Here is the rest, in Newell's
+// coordinates: z up, the spout toward +x, base at z = 0. (The listing has 0.78 for one coordinate
+// of the rim whose seven mirror images are 0.784.)
 #pragma once
 
 #include <array>
@@ -16,21 +16,21 @@
 
 namespace rastrum::shapes {
 
-/// Rows run from the rim down, from the knob down, from the centre of the bottom outward, from the
-/// body outward; column × row direction points outward.
+/// Rows run from the rim down, the knob down, the centre of the bottom outward, or the body
+/// outward; column × row direction points outward.
 struct BezierPatch {
   Vec3d points[4][4];  ///< [row][column]
 };
 
 namespace teapot_data {
 
-/// A row of control points of a surface of revolution; `bulge` is the offset of the two inner ones,
+/// A row of control points of a surface of revolution. `bulge`: the offset of the two inner ones,
 /// 0.56 · radius but for the knob.
 struct Ring {
   double radius, bulge, z;
 };
-/// A row of a tube that is its own mirror image in y = 0: from inner (x, z) to outer (x, z),
-/// bulging to `half_width`.
+/// A row of a tube with the mirror plane y = 0: from inner (x, z) to outer (x, z), bulging to
+/// `half_width`.
 struct Rib {
   double inner_x, inner_z, outer_x, outer_z, half_width;
 };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A tube around the (p, q) torus knot: p turns about the y axis while q turns about the tube of a
-// torus with radii 1 and 0.4. The frame is the torus's own normal, which is perpendicular to the
-// curve and closes with it; so the tube closes without a twist correction and its normals are
-// exact. And the same knot as a tube of quadrics, whose surface is exact, too.
+// torus with radii 1 and 0.4. The frame is the torus's normal, which is perpendicular to the curve
+// and closes with it, so the tube needs no twist correction and its normals are exact. Also the
+// knot as a tube of quadrics, with an exact surface.
 
 #include <numbers>
 #include <numeric>
