@@ -11,8 +11,8 @@
 
 namespace rastrum::bench {
 
-/// Returns what f returns: why something is not run, or "" if it is. If f throws instead, returns
-/// that reason.
+/// Returns f's result: why something is not run, or "" if it is. If f throws, the error is that
+/// reason.
 template <class F>
 [[nodiscard]] std::string attempt(F&& f) {
   try {

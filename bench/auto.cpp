@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum bench auto`: what `auto` chooses against every fixed choice of rasterizer × visibility,
-// over scenes × sizes. The project's goal: within 1.25 × of the best one on every row.
+// `rastrum bench auto`: the choice of `auto` beside every fixed rasterizer × visibility, over
+// scenes × sizes. The project's goal: within 1.25 × of the best one on every row.
 #include <algorithm>
 #include <array>
 #include <vector>
@@ -18,16 +18,16 @@ namespace rastrum::bench {
 namespace {
 
 constexpr double kGoal = 1.25;
-/// Choices this much slower than the fastest are not timed beyond their first frame.
+/// Choices this much slower than the fastest have their first frame as only sample.
 constexpr double kHopeless = 4;
 
-/// Rows of more fragments are left out: `sorted` holds them all, 24 bytes each.
+/// Skips rows with more fragments, because `sorted` holds them all, 24 bytes each.
 constexpr double kMostFragments = 150e6;
 
 /// Rows beside the chosen scenes: few large triangles, many layers.
 struct Extra {
   const char* name;
-  int layers;  ///< fragments a pixel, at most
+  int layers;  ///< the most fragments a pixel
   Mesh (*make)(Size);
 };
 constexpr std::array<Extra, 4> kExtras{

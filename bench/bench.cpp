@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The table of benchmarks and the choice among them.
+// The table of benchmarks and its lookup.
 #include <bench/bench.hpp>
 
 #include <algorithm>

@@ -8,9 +8,9 @@
 namespace rastrum::bench {
 
 /// Runs the benchmark that `args` names, with the options that follow it, and prints its table.
-/// Without arguments, or with `--help`, it lists the benchmarks. Returns the program's exit status:
-/// 0, 1 where a picture that is checked before it is timed is wrong, 2 for a usage error.
-/// Throws Error for what the outside world does wrong (files, devices, memory).
+/// Without arguments, or with `--help`, lists the benchmarks. Returns the exit status: 0, 1 if a
+/// picture is wrong (pictures are checked before the timing), 2 for a usage error. Throws Error for
+/// faults of files, devices and memory.
 int run(std::span<const std::string_view> args);
 
 }  // namespace rastrum::bench

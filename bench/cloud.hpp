@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Places in front of a camera, the same in every run: what benches of many small things draw.
+// Random places in front of a camera, the same in every run, for benches of many small things.
 #pragma once
 
 #include <cmath>
@@ -25,7 +25,7 @@ class Noise {
   std::uint64_t state_ = 1;
 };
 
-/// Looks along −z; at distance 1 a unit is half the picture's height.
+/// Looks along −z. At distance 1 a unit is half the picture's height.
 [[nodiscard]] inline Camera camera_at_origin() {
   Camera camera;
   camera.eye = {0, 0, 0};
@@ -35,7 +35,7 @@ class Noise {
   return camera;
 }
 
-/// A place that is seen, between the distances 2 and 4.
+/// A visible place between the distances 2 and 4.
 [[nodiscard]] inline Vec3 place(Noise& noise, double aspect) {
   const double z = 2 + 2 * noise.next();
   return {noise.between(-aspect * z, aspect * z), noise.between(-z, z), static_cast<float>(-z)};

@@ -1,5 +1,5 @@
-# Writes commit.hpp at build time, so that a figure names the code it was measured on. The file is
-# touched only when its contents change.
+# Writes commit.hpp at build time, so that a figure names the measured code. Changes the file only when its
+# contents change.
 execute_process(COMMAND git describe --always --dirty --abbrev=12
                 WORKING_DIRECTORY ${SOURCE_DIR} OUTPUT_VARIABLE commit
                 OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)

@@ -19,8 +19,8 @@ namespace {
 
 using raster::BlockColors, raster::FrameGeometry, raster::VisibleBlock;
 
-/// A colour of a key alone: no attribute is fetched, so that frames show what coverage and
-/// visibility cost.
+/// A colour from the key alone. It fetches no attribute, so frames show the cost of coverage and
+/// visibility.
 template <class Color>
 class KeyShader final : public raster::BlockShader {
  public:
@@ -60,8 +60,8 @@ std::uint64_t hash_of(const Image<std::int64_t>& ids) {
   return h;
 }
 
-/// Whether the frame was drawn by what was asked for: an option that a build does not know yet
-/// would otherwise be measured under a false name.
+/// Says why a frame was not drawn by what was asked for. Otherwise a build that ignores an option
+/// would be measured under a false name.
 std::string absent(const family::Options& wanted, const FrameStats& stats) {
   if (wanted.device == Device::cuda && stats.device != Device::cuda)
     return "left to the CPU: " + stats.device_why;
@@ -98,7 +98,7 @@ struct OnDevice {
   }
 };
 
-/// An entrant whose picture is right, with one of two ways to draw.
+/// An entrant whose picture is right. It has one of the two ways to draw.
 struct Racer {
   std::size_t index;
   std::unique_ptr<Renderer> renderer;
@@ -110,7 +110,7 @@ struct Racer {
 }  // namespace
 
 const raster::BlockShader& triangle_colors() {
-  // A hash of the id. No branch, so that compilers make vectors of it.
+  // A hash of the id, without a branch so that compilers vectorize it.
   static const KeyShader shader([](std::uint64_t key) {
     const std::uint32_t h = static_cast<std::uint32_t>(raster::id_of_key(key)) * 0x9e3779b1U;
     const auto channel = [](std::uint32_t byte) {
@@ -204,7 +204,7 @@ std::vector<Result> contest(const Subject& subject, std::span<const Entrant> ent
   double fastest_ms = 1e300;
   for (const Racer& r : racers) fastest_ms = std::min(fastest_ms, r.first_ms);
   std::vector<Contender> contenders;
-  std::vector<Result*> running;  // of the contenders
+  std::vector<Result*> running;  // the results of the contenders
   for (Racer& r : racers) {
     if (r.first_ms > hopeless * fastest_ms) {
       results[r.index].timing = {results[r.index].name, {r.first_ms}};

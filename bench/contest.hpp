@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rasterizers against each other on one picture: their ids are compared before anything is timed,
-// then they take turns (measure.hpp).
+// Compares rasterizers on one picture: their ids are compared first, then their frames are timed in
+// turns (measure.hpp).
 #pragma once
 
 #include <algorithm>
@@ -26,25 +26,25 @@ struct Subject {
   MeshView mesh;
   Camera camera;
   int width = 0, height = 0;
-  /// A frame ends with 8-bit colours by this shader; null: grey = depth³, as paper 1 shades.
+  /// Makes 8-bit colours; null: grey = depth³, paper 1's shading.
   const raster::BlockShader* shader = nullptr;
-  /// Colours by the façade's shader of the entrant's options instead, which a device has too.
+  /// Uses the façade's shader of the entrant's options instead, which a device has too.
   bool facade_shader = false;
 };
 
-/// One colour a triangle, hashed from its id: what paper 5 draws, and cheap.
+/// One colour per triangle, hashed from its id: what paper 5 draws, and cheap.
 [[nodiscard]] const raster::BlockShader& triangle_colors();
 
 struct Entrant {
   std::string name;
   family::Options options;  ///< the size is the subject's
-  bool in_place = false;  ///< arrays and picture in a device's memory, where they are copied before
+  bool in_place = false;    ///< arrays and picture stay in a device's memory
 };
 
 struct Result {
   std::string name;
-  std::string not_run;  ///< why; empty: it ran
-  bool wrong = false;   ///< its ids differ from the default's: `not_run` says so
+  std::string not_run;  ///< the reason; empty if it ran
+  bool wrong = false;   ///< its ids differ from the default's, as `not_run` says
   FrameStats stats;     ///< of a frame in the middle of the run
   Timing timing;
   std::vector<std::pair<std::string, double>> stages_ms;  ///< medians; equal names are added up
@@ -56,32 +56,30 @@ struct Result {
   return std::ranges::none_of(results, &Result::wrong);
 }
 
-/// Draws one frame of `subject`, whose size it has.
+/// Draws one frame of `subject`, at its size.
 FrameStats draw(Renderer& renderer, const Subject& subject, FrameOptions frame,
                 const Targets& targets, const Pass& pass = {});
 
 /// FNV-1a over whole words.
 [[nodiscard]] std::uint64_t hash_of(std::span<const std::uint64_t> words);
 
-/// A hash of the ids of `subject` drawn by `entrant`, and that frame's statistics.
 struct Fingerprint {
   std::uint64_t ids = 0;
   FrameStats stats;
 };
 [[nodiscard]] Fingerprint fingerprint(const Subject& subject, const Entrant& entrant);
 
-/// Why an entrant could not run: "absent" for a name that this build has not, else the message.
+/// Why an entrant could not run: "absent" for a name that this build lacks, else the message.
 [[nodiscard]] std::string why_not(const Error& e);
 
-/// A result for each entrant, in order. Each first draws the subject alone; where its ids are not
-/// those of the default (rasterizer and visibility `auto`) it is not timed. An entrant whose names
-/// or sizes this build has not, or that runs out of memory, is not run and says why.
-/// Entrants whose checked frame took longer than `hopeless` times the fastest one's are not timed
-/// further: that frame is their only sample.
+/// Returns a result for each entrant, in order. Each first draws the subject alone. It is not timed
+/// if its ids differ from the default's (rasterizer and visibility `auto`), if this build lacks its
+/// names or sizes, or if it runs out of memory; `not_run` says why. An entrant whose first frame
+/// takes longer than `hopeless` times the fastest one's has that frame as its only sample.
 [[nodiscard]] std::vector<Result> contest(const Subject& subject, std::span<const Entrant> entrants,
                                           const Plan& plan, double hopeless = 1e9);
 
-/// A result as a figure in ms; with `memory` the bytes of mesh, picture and scratch beside it.
+/// A result as a figure in ms; with `memory` also the bytes of mesh, picture and scratch.
 [[nodiscard]] Measured measured_ms(const Result& result, const Subject& subject, bool memory);
 /// The same in frames a second.
 [[nodiscard]] Measured measured_fps(const Result& result, const Subject& subject);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench hashed` and `rastrum bench hiz`: sheets one behind the other, so that the depth
-// complexity is a number that can be turned.
+// complexity is a parameter.
 #include <algorithm>
 #include <vector>
 
@@ -15,7 +15,7 @@
 namespace rastrum::bench {
 namespace {
 
-constexpr int kCells = 48;  ///< of a sheet along a side: 4,608 triangles
+constexpr int kCells = 48;  ///< quads along a sheet's side: 4,608 triangles
 
 constexpr std::array<Order, 3> kOrders{Order::front_to_back, Order::random, Order::back_to_front};
 

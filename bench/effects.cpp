@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench effects`: what ambient occlusion, eye-dome lighting, silhouettes, edges, lights,
-// shadows, environments, numbers and layers add to a frame at 1920 × 1080, the whole of --studio,
-// and VTK's occlusion and depth peeling beside them. Each factor and picture of ours is compared
-// with the plain code's before anything is timed; VTK's by what it covers.
+// shadows, environments, numbers, layers and all of --studio add to a frame at 1920 × 1080, beside
+// VTK's occlusion and depth peeling. Our factors and pictures are compared with the plain code's
+// before the timing, VTK's pictures by their coverage.
 #include <algorithm>
 #include <functional>
 #include <optional>
@@ -47,7 +47,7 @@ struct Pictures {
 };
 
 constexpr int kEffects = 4;
-constexpr int kVtkSamples = 16;  ///< of occlusion, which it is compared with; studio has its own
+constexpr int kVtkSamples = 16;  ///< of occlusion, as in VTK; studio has its own number
 constexpr const char* kGlass = "translucent, exact";
 constexpr const char* kNames[kEffects] = {"occlusion", "eye dome", "silhouettes", "edges"};
 
@@ -61,12 +61,12 @@ void apply(Effects& effects, int which, Pictures& p, const Camera& camera, doubl
   if (which == 3) effects.edges(p.primitives.view(), edges, camera, 1, p.factor);
 }
 
-/// Frames of other lights than the fixed one, of numbers, of layers, and what --studio draws.
+/// Frames with other lights, numbers or layers, and the frame of --studio.
 struct LitFrame {
   const char* name;
   FrameOptions options;
   bool occlusion = false;
-  int numbers = 0;  ///< 1: as colours, 2: with isolines as well
+  int numbers = 0;  ///< 1: as colours, 2: also with isolines
 };
 
 std::vector<LitFrame> lit_frames(const FrameOptions& plain) {
@@ -108,7 +108,7 @@ void draw(Renderer& renderer, Effects& effects, const LitFrame& frame, const Sce
   effects.occlude({.view_depth = p.depth.view()}, camera, {.radius = radius}, p.color, {});
 }
 
-/// The mean of red, green and blue where something is seen, of 255.
+/// The mean of red, green and blue over covered pixels, of 255.
 double brightness(const Image<Vec4>& picture) {
   double sum = 0, count = 0;
   for (const Vec4& c : picture.pixels()) {
@@ -119,7 +119,7 @@ double brightness(const Image<Vec4>& picture) {
   return count == 0 ? 0 : sum / count;
 }
 
-/// VTK beside ours on one scene: its own `phong`, with its occlusion, and peeling layers.
+/// Adds VTK's frames of one scene: its `phong`, with its occlusion, and peeled layers.
 void time_vtk(VtkPeer& vtk, const Mesh& mesh, const Camera& camera, const FrameOptions& frame,
               double radius, const Image<Rgba8>& ours, std::vector<Contender>& contenders,
               const std::function<void(const std::string&, const std::string&)>& say) {
@@ -165,13 +165,13 @@ int run_effects(std::span<const std::string_view> arguments) {
                            "a reach as ours in the row `occlusion` (studio has 8), and its peeling "
                            "takes all layers (one round of it "
                            "where a frame takes 4 s, else three).");
-  // A row for each thing that is timed, a column for each scene.
+  // A row for each timed frame, a column for each scene.
   Grid grid{"", {"ms"}, {}};
   Plot plot = options.plot(document, "scene", "ms");
   plot.kind = Plot::Kind::bars;
   Panel panel{"frame and effects", {}};
   bool right = true;
-  // A surface that takes light from itself nearly everywhere, whatever data is there.
+  // The gyroid occludes itself nearly everywhere and needs no data file.
   std::vector<SceneInfo> scenes{{"gyroid", {}, "gyroid?cells=64"}};
   for (const SceneInfo& info : peer_scenes())
     if (!info.soup && available(info) && !(options.quick && info.subdivide > 0))
@@ -238,7 +238,7 @@ int run_effects(std::span<const std::string_view> arguments) {
       grid.cell(what, std::string(info.name)) = cell;
     };
     std::vector<std::pair<std::string, std::string>> of_vtk;
-    // Peeling takes seconds: a smoke test has it once.
+    // Peeling takes seconds, so a smoke test has it once.
     const bool beside_vtk = vtk && (!options.quick || &info == &scenes.front());
     if (beside_vtk) {
       (void)renderer.render(binding.view(), camera, frame, {.color8 = p.color});
@@ -250,7 +250,7 @@ int run_effects(std::span<const std::string_view> arguments) {
     progress(std::string(info.name));
     std::vector<Timing> timings = measure_interleaved(contenders, options.plan());
     if (beside_vtk) {
-      // Seconds a frame: beside ours, few of them.
+      // VTK's frames take seconds, so there are few rounds.
       const LitFrame& glass =
           *std::find_if(lit.begin(), lit.end(), [](const LitFrame& l) { return l.name == kGlass; });
       vtk->set_occlusion(0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Counts of bytes and operations; see the header. They are the least that the picture rules allow,
-// with nothing for binning, masks, gathers or tests that fail: a floor and not a model.
+// The bytes and operations behind floor.hpp: the least that the picture rules allow. Binning,
+// masks, gathers and failed tests cost nothing here: this is a floor, not a model.
 #include "floor.hpp"
 
 namespace rastrum::bench {
@@ -23,8 +23,7 @@ constexpr double kPerFragment = 6 + 4 + 1;
 // multiply, add; and of scale, round where the colour is stored.
 constexpr double kPerShade = 10 + 30 + 20 + 9 + 8 + 13 + 5 + 6 + 6;
 constexpr double kPerPixel = kPerShade + 6;
-// Alpha times the light that still shines through, a multiply and an add for 3 channels, and the
-// light that shines through afterwards.
+// For 3 channels alpha times the transmittance, a multiply and an add; then the new transmittance.
 constexpr double kPerBlend = 1 + 6 + 1;
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The least time that a frame can take on a machine: what it must read and write over the measured
-// bandwidth, what it must compute over the measured arithmetic. Which of the two is larger binds.
+// The floor, the least time of a frame on a machine: the larger of its memory traffic over the
+// measured bandwidth and its operations over the measured arithmetic.
 #pragma once
 
 #include <cstdint>
@@ -28,9 +28,9 @@ struct Floor {
   }
 };
 
-/// Bytes: positions, normals and indices read once at the read bandwidth, then 4 bytes a pixel
-/// written once by streaming stores. Operations (float32 or integer lanes, counted in floor.cpp)
-/// over the peak with multiply and add apart, which is what the picture rules allow.
+/// Bytes: positions, normals and indices are read once at the read bandwidth, and 4 bytes a pixel
+/// are written once by streaming stores. Operations (float32 or integer lanes, counted in
+/// floor.cpp) run at the peak without fused multiply-add, which the picture rules forbid.
 [[nodiscard]] Floor floor_of(const Workload& work, const MachineLimits& machine);
 
 }  // namespace rastrum::bench

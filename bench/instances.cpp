@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum bench instances`: many instances of one mesh beside the same triangles as one mesh. The
-// ids of each picture are compared before anything is timed: with the serial reference's, pixel by
-// pixel, and with the one mesh's, whose vertices were rounded in another order.
+// `rastrum bench instances`: many instances of one mesh beside the same triangles as one mesh.
+// Before the timing, ids are compared with the serial reference's, pixel by pixel, and with the
+// single mesh's, whose vertices were rounded in another order.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -25,16 +25,16 @@
 namespace rastrum::bench {
 namespace {
 
-/// The least share of pixels with the id of the one mesh: what differs lies on edges.
+/// The least share of pixels with the single mesh's id; the others lie on edges.
 constexpr double kEqualIds = 0.99;
 
-/// Turned, scaled to `px` pixels of a picture of that height, and somewhere in the view.
+/// A random turn and place in the view, scaled to `px` pixels in a picture of that height.
 Mat4d placed(Noise& noise, double aspect, double px, int height) {
   const Vec3 at = place(noise, aspect);
   const double size = px * 2 / height * -static_cast<double>(at.z);
   const double angle = 2 * std::numbers::pi * noise.next();
   const double s = size * std::sin(angle), c = size * std::cos(angle);
-  // About y, then a quarter of it leant towards the eye, so that three sides are seen.
+  // Turned about y, then leant towards the eye so that three sides are visible.
   const double rows[16] = {c,        0,          s,        at.x,  //
                            0.6 * s,  0.8 * size, -0.6 * c, at.y,  //
                            -0.8 * s, 0.6 * size, 0.8 * c,  at.z,  //

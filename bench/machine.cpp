@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The machine's limits, measured; and `rastrum bench machine`.
+// Measures the machine's limits; and `rastrum bench machine`.
 #include "machine.hpp"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ constexpr std::size_t kSteps = std::size_t{1} << 22;
 constexpr int kRepeats = 7;
 constexpr std::align_val_t kAlignment{128};
 
-/// Floats from the system, aligned; written once by the thread that uses them.
+/// Aligned memory from the system. The thread that uses it writes it first.
 class FloatArray {
  public:
   FloatArray() : data_(static_cast<float*>(::operator new(kFloats * sizeof(float), kAlignment))) {
@@ -41,7 +41,7 @@ class FloatArray {
   float* data_;
 };
 
-/// Runs `work` on all threads at once, several times; the seconds of the fastest round.
+/// Runs `work` on all threads at once, several times. Returns the seconds of the fastest round.
 double best_seconds(int threads,
                     const std::function<void(const FloatArray&, const FloatArray&)>& work) {
   using Clock = std::chrono::steady_clock;
@@ -69,7 +69,6 @@ double best_seconds(int threads,
   return best;
 }
 
-/// A figure by its name in JSON and in words.
 struct Limit {
   const char *key, *text, *unit;
   double MachineLimits::*value;
@@ -85,11 +84,11 @@ constexpr Limit kLimits[] = {
 }  // namespace
 
 MachineLimits measure_machine(int threads) {
-  // Results of the loops go here, so that the loops are not optimized away.
+  // Takes the loops' results, so that they are not optimized away.
   volatile float sink = 0;
   MachineLimits m;
   m.threads = threads;
-  /// 10⁹ of what all threads do in a second.
+  /// 10⁹ units a second, all threads together.
   const auto rate = [&](double of_each, const auto& work) {
     return threads * of_each / 1e9 / best_seconds(threads, work);
   };

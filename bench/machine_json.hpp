@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// MachineLimits as JSON; apart from machine.hpp, so that its users need no JSON library.
+// MachineLimits as JSON, in a header of its own so that users of machine.hpp need no JSON library.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -49,8 +49,8 @@ void CopyFloats(const float* from, float* to, std::size_t n) {
   hwy::FlushStream();
 }
 
-// The chains are named variables and not an array: an array of vectors stays in memory. Twelve of
-// them fit the 16 registers of AVX2 and cover 4 cycles of latency on 2 units.
+// The chains are named variables, because an array of vectors would stay in memory. Twelve of them
+// fit the 16 registers of AVX2 and cover 4 cycles of latency on 2 units.
 template <class Step>
 HWY_INLINE float Chains(std::size_t steps, float factor, Step step) {
   const D d;

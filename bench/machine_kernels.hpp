@@ -13,10 +13,10 @@ void write_floats(float* data, std::size_t n, float value);
 void stream_floats(float* data, std::size_t n, float value);
 void copy_floats(const float* from, float* to, std::size_t n);
 
-/// Chains of multiply-adds, `steps` long; returns something that depends on all of them.
+/// Runs chains of multiply-adds, `steps` long. The result depends on all of them.
 float fused_multiply_adds(std::size_t steps, float factor);
 float multiplies_and_adds(std::size_t steps, float factor);
-/// Operations of either: a multiply and an add in each lane of each chain at each step.
+/// The operations of both: a multiply and an add in each lane of each chain at each step.
 double arithmetic_operations(std::size_t steps);
 
 }  // namespace rastrum::bench

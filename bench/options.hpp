@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Options of a benchmark: spelled, helped and refused as everywhere in the program.
+// Options of a benchmark, parsed like all options of the program.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,7 @@ class OptionParser : public cli::Parser {
   OptionParser(const std::string& name, const std::string& description)
       : Parser("rastrum bench " + name, description) {}
 
-  /// The exit status where there is nothing to run: 0 after `--help`, 2 after a usage error.
+  /// Returns the exit status if there is nothing to run: 0 after `--help`, 2 after a usage error.
   [[nodiscard]] std::optional<int> parse(std::span<const std::string_view> options);
 };
 

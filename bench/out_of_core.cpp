@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum bench out_of_core`: a generated mesh that may be larger than memory, drawn at
-// 1920 × 1080 within a memory limit, opaque and at opacity 0.3: time, the greatest resident memory
-// (mapped pages in use count), and beside them how long it takes to read the same bytes. First a
-// tenth of it is drawn so and in memory, and the pictures are compared, bit for bit.
+// `rastrum bench out_of_core`: a generated mesh that may be larger than memory, drawn at 1920 ×
+// 1080 within a memory limit, opaque and at opacity 0.3. Shows the time, the greatest resident
+// memory (including mapped pages in use) and how long it takes to read the same bytes. First a
+// tenth of the mesh is drawn both ways, out of core and in memory, and the pictures are compared,
+// bit for bit.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -34,8 +35,8 @@ double now_s() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// Wavy sheets one behind the other, of squares in rows: about `triangles` triangles, 12 bytes a
-/// vertex and 13 a face. Returns how many there are.
+/// Writes wavy sheets one behind the other: about `triangles` triangles in rows of squares, 12
+/// bytes a vertex and 13 a face. Returns the number of triangles.
 std::uint64_t write_sheets(const std::filesystem::path& file, double triangles) {
   const auto n = static_cast<std::uint64_t>(std::sqrt(triangles / 2 / kSheets)) + 1;  // squares
   const std::uint64_t vertices = kSheets * (n + 1) * (n + 1), faces = kSheets * 2 * n * n;
@@ -45,7 +46,7 @@ std::uint64_t write_sheets(const std::filesystem::path& file, double triangles) 
   rest += "\nproperty float x\nproperty float y\nproperty float z\nelement face ";
   rest.append(std::to_string(faces));
   rest += "\nproperty list uchar int vertex_indices\nend_header\n";
-  // float32 are read where they lie if they lie at multiples of four.
+  // The reader uses float32 in place if they lie at multiples of four.
   head.append(4 - (head.size() + rest.size()) % 4, '-').append(rest);
   io::AtomicFile out(file);
   out.write(head.data(), head.size());
@@ -102,7 +103,7 @@ FrameOptions frame_of(float opacity) {
   return frame;
 }
 
-/// Writes a file to the disk and drops it from the system's page cache.
+/// Writes a file to the disk and drops it from the page cache.
 void forget(const std::filesystem::path& file) {
   const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0) return;
@@ -114,7 +115,7 @@ void forget(const std::filesystem::path& file) {
 void restart_peak() {
   std::ofstream("/proc/self/clear_refs") << "5";
 }
-/// The greatest resident memory since then, MiB; 0 where the system does not say.
+/// The greatest resident memory since restart_peak(), MiB; 0 if the system does not say.
 double peak_mib() {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);)

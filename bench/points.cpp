@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench points`: clouds of points of one pixel and of three, beside OpenGL's points (Mesa
-// llvmpipe) of one and VTK's. The ids of each picture are compared with the serial reference's
-// before anything is timed.
+// llvmpipe) of one pixel and VTK's. Before the timing, each picture's ids are compared with the
+// serial reference's.
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -41,7 +41,6 @@ struct Cloud {
   }
 };
 
-/// One way to draw a cloud.
 struct CloudWay {
   const char* name;
   float point_size;
@@ -50,7 +49,7 @@ struct CloudWay {
 constexpr CloudWay kCloudWays[] = {
     {"1 px, id", 1, false}, {"1 px, colours", 1, true}, {"3 px, id", 3, false}};
 
-/// The bytes that a frame must move: positions read, a word a pixel written; over the bandwidths.
+/// The bytes that a frame must move over the bandwidths: positions read, 4 bytes a pixel written.
 double floor_ms(std::size_t points, int width, int height, const MachineLimits& machine) {
   return (12.0 * static_cast<double>(points) / machine.read_gbs +
           4.0 * width * height / machine.stream_gbs) /

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum bench prepared`: frames of prepared meshes beside the same frames unprepared, and the
-// trace of a tree that is there already (Embree). Every picture is compared first, bit by bit.
+// `rastrum bench prepared`: frames of prepared meshes beside the same frames unprepared, and
+// Embree's trace of a finished tree. Every picture is compared first, bit by bit.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -26,23 +26,22 @@
 namespace rastrum::bench {
 namespace {
 
-/// A scene to be drawn plain and prepared, from one camera after the other.
+/// A scene drawn plain and prepared, from one camera after the other.
 struct Views {
   std::string name;
   std::vector<InstanceView> plain, prepared;
   std::vector<Camera> cameras;
-  bool is_flight = false;  ///< its frames are of interest one by one
+  bool is_flight = false;  ///< whether its frames are listed one by one
   Cull cull = Cull::none;
   double prepare_ms = 0;
   std::uint64_t triangles = 0;
 };
 
-/// One picture of a subject: which share of the triangles was set up.
+/// One frame of a subject, and the share of the triangles that was set up.
 struct OfCamera {
   double share = 1, plain_ms = 0, prepared_ms = 0;
 };
 
-/// The measurements of a subject.
 struct Outcome {
   double plain_ms = 0, prepared_ms = 0, ratio = 0, embree_ratio = 0;
   double outside = 0, away = 0, hidden = 0;  ///< shares of the triangles
@@ -54,7 +53,7 @@ class Turns {
   Turns(const TableOptions& options, int samples, Started<EmbreePeer>& embree)
       : options_(options), samples_(samples), embree_(embree) {}
 
-  /// `mesh`: for Embree; null: it is left out. Whether all pictures are equal goes to `right`.
+  /// `mesh` is for Embree; null leaves it out. Clears `right` if a picture differs.
   Outcome measure(const Views& s, const MeshView* mesh, int width, int height, bool& right) {
     Renderer plain({.threads = options_.threads}), prepared({.threads = options_.threads});
     FrameOptions frame;
@@ -85,7 +84,7 @@ class Turns {
       out.hidden += hidden / n;
       out.cameras.push_back({1 - outside - away - hidden});
     }
-    // All cameras in turn, since a frame begins with what the last one saw; the time of each.
+    // Times all cameras in turn, because a frame begins with what the last one saw.
     std::vector<std::vector<double>> plain_ms(s.cameras.size()), prepared_ms(s.cameras.size());
     const auto all = [&](Renderer& renderer, const std::vector<InstanceView>& instances,
                          std::vector<std::vector<double>>& times) {
@@ -123,8 +122,8 @@ class Turns {
   Started<EmbreePeer>& embree_;
 };
 
-/// The frames of flights by the share of the triangles that was set up: a table, and a panel a
-/// flight.
+/// The frames of flights by the share of the triangles that was set up: a table, and a panel for
+/// each flight.
 class ByShare {
  public:
   ByShare() {
@@ -170,7 +169,7 @@ class ByShare {
   Plot plot_;
 };
 
-/// A flight from the camera of `--fit sphere`, which sees all of the scene, towards the middle of
+/// A flight from the camera of `--fit sphere`, which sees the whole scene, towards the centre of
 /// the scene's box.
 std::vector<Camera> flight(const SceneView& scene, int steps) {
   const Camera from = fit_camera(scene, 1.0472F, false);
@@ -188,7 +187,7 @@ std::vector<Camera> flight(const SceneView& scene, int steps) {
 std::vector<Camera> around(const SceneView& scene, int count) {
   std::vector<Camera> cameras;
   for (int i = 0; i < count; ++i) {
-    // Points of a spiral on the sphere: each looks from elsewhere.
+    // Points of a spiral on the sphere, for views from all sides.
     const double z = 1 - (2.0 * i + 1) / count, angle = i * std::numbers::pi * (3 - std::sqrt(5.0));
     const double r = std::sqrt(1 - z * z);
     cameras.push_back(
@@ -197,7 +196,7 @@ std::vector<Camera> around(const SceneView& scene, int count) {
   return cameras;
 }
 
-/// Balls in a hall that the camera looks along: most are beside it, or behind others.
+/// Balls in a hall that the camera looks along. Most are outside the view or hidden.
 std::vector<Mat4d> hall(std::size_t count) {
   std::vector<Mat4d> places;
   const auto across = static_cast<std::size_t>(std::cbrt(static_cast<double>(count)));
@@ -212,7 +211,6 @@ std::vector<Mat4d> hall(std::size_t count) {
   return places;
 }
 
-/// A ball at each place.
 Views hall_of(const std::string& name, const MeshView& ball, const PreparedMesh& prepared,
               std::size_t count) {
   Views s;
@@ -225,7 +223,7 @@ Views hall_of(const std::string& name, const MeshView& ball, const PreparedMesh&
   return s;
 }
 
-/// The least of three.
+/// The least of three times.
 double prepare_ms(const MeshView& mesh, int threads) {
   const auto once = [&] { return timed_ms([&] { (void)PreparedMesh(mesh, threads); }); };
   return std::min({once(), once(), once()});
@@ -288,7 +286,7 @@ int run_prepared(std::span<const std::string_view> arguments) {
   };
   const auto cameras = [&](int n) { return options.quick ? 3 : n; };
   std::vector<const SceneInfo*> infos;
-  constexpr int kLarge = 3;  // subdivided so often: only by name, and in full view
+  constexpr int kLarge = 3;  // scenes subdivided this often run only by name, in full view
   if (options.mesh.empty()) {
     for (const SceneInfo& info : peer_scenes())
       if (info.subdivide < kLarge && available(info) &&
@@ -339,7 +337,7 @@ int run_prepared(std::span<const std::string_view> arguments) {
     camera.target = {0.9, 0.6, -1};
     s.cameras = {camera};
     add(s, nullptr, options.size(1920), options.size(1080));
-    // Frames of seconds: few of them.
+    // These frames take seconds, so there are few of them.
     s = hall_of("a million balls, flown into", small_view, prepared_small,
                 options.triangles(1'000'000));
     s.cameras = flight({.instances = s.plain}, cameras(8));

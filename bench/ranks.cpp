@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench ranks`: a mesh dealt to ranks that are threads of this process, beside one
-// renderer with as many threads. Pictures are compared before anything is timed, bit for bit.
+// renderer with as many threads. Pictures are compared before the timing, bit for bit.
 #include "ranks.hpp"
 
 #include <algorithm>
@@ -62,7 +62,7 @@ namespace {
 
 using Traffic = LocalRanks::Traffic;
 
-/// Ranks of one scene, whose renderers are kept from frame to frame.
+/// The ranks of one scene. Their renderers are kept between frames.
 struct Crew {
   Crew(const Slabs& slabs, std::size_t n, int threads) : ranks(static_cast<int>(n)) {
     for (std::size_t r = 0; r < n; ++r) {
@@ -71,7 +71,7 @@ struct Crew {
           RendererOptions{.threads = std::max(1, threads / static_cast<int>(n))}));
     }
   }
-  /// Returns what the rank that sends most has sent.
+  /// Returns the traffic of the rank that sends most.
   Traffic draw(const Camera& camera, const FrameOptions& frame, WordExchange exchange,
                const Targets& targets) {
     RanksOptions options;
@@ -97,7 +97,7 @@ struct Crew {
   std::vector<std::pair<std::string, Traffic>> phases;  ///< of rank 0 in the last frame
 };
 
-/// A row of one scaling: `n` ranks with the slabs, opaque and translucent.
+/// A row of one scaling: the slabs on `n` ranks, opaque and translucent.
 bool add_row(Document& document, Grid& grid, const char* kind, const Slabs& slabs, std::size_t n,
              const TableOptions& options, FrameOptions frame, Grid* phases, Panel* panel) {
   SceneView all;
@@ -175,7 +175,7 @@ int run_ranks(std::span<const std::string_view> arguments) {
               {"surfaces", "phase", "KB", "messages"},
               {}};
   const auto cells = [&](double triangles) {
-    // About 7 · cells² triangles a period; measured by making it.
+    // A period has about 7 · cells² triangles, as measured.
     return std::max(8, static_cast<int>(std::sqrt(triangles / 14)));
   };
   const Mesh whole = shapes::gyroid(cells(static_cast<double>(options.triangles(600'000))));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Parts of a mesh dealt to ranks, and what ranks would send, for `rastrum bench ranks`.
+// For `rastrum bench ranks`: deals parts of a mesh to ranks and counts what they send.
 #pragma once
 
 #include <cstddef>
@@ -17,26 +17,26 @@
 
 namespace rastrum::bench {
 
-/// A mesh cut into slabs of space, as a simulation deals its domain.
+/// A mesh cut into slabs of space, as a simulation divides its domain.
 struct Slabs {
   Slabs(const Mesh& whole, std::size_t count);
   Slabs(const Slabs&) = delete;
   Slabs& operator=(const Slabs&) = delete;
 
   std::size_t triangles;
-  std::vector<Mesh> meshes;  ///< one a slab that has some
+  std::vector<Mesh> meshes;  ///< one for each slab that is not empty
   std::vector<MeshView> views;
   std::vector<InstanceView> parts;
 };
 
-/// The instances that rank r of n holds, a run of them, and their numbers.
+/// The consecutive instances that rank r of n holds, and their numbers.
 struct Share {
   std::vector<std::uint64_t> numbers;
   SceneView scene;
 };
 [[nodiscard]] Share share_of(const Slabs& slabs, std::size_t r, std::size_t n);
 
-/// A rank of this process that notes what it sends in each phase.
+/// A rank of this process that records what it sends in each phase.
 class Counted final : public Communicator {
  public:
   Counted(Communicator& rank, const LocalRanks& all) : rank_(rank), all_(all) {}
@@ -68,7 +68,7 @@ class Counted final : public Communicator {
     return rank_.share(count);
   }
   [[nodiscard]] bool is_one_process() const override { return rank_.is_one_process(); }
-  /// By the phase before: what follows it is sent.
+  /// Each entry has a phase's name and what was sent after it began.
   std::vector<std::pair<std::string, LocalRanks::Traffic>> phases;
 
  private:
@@ -93,16 +93,16 @@ class Counted final : public Communicator {
   std::string phase_;
 };
 
-/// The constants of LogGP for ranks that are threads of this process, measured here.
+/// The constants of LogGP, measured for ranks that are threads of this process.
 struct LogGP {
-  double latency_us = 0;    ///< from one rank to another and on
-  double message_us = 0;    ///< from one message of a rank to its next; here no less than that
-  double bytes_per_us = 0;  ///< of large ones
+  double latency_us = 0;    ///< of a small message from rank to rank
+  double message_us = 0;    ///< between two messages of a rank; measured as latency_us
+  double bytes_per_us = 0;  ///< of large messages
 };
 [[nodiscard]] LogGP measure_messages(bool quick);
 
-/// Adds the bytes that up to 16,384 ranks would send, counted one rank after another, and how long
-/// that would take. Returns false if the counts are not those that ranks of this process have.
+/// Adds the bytes that up to 16,384 ranks would send, counted one rank at a time, and the predicted
+/// time. Returns false if the counts differ from those of real ranks in this process.
 [[nodiscard]] bool add_simulated(Document& document, const Mesh& mesh, int width, int height,
                                  bool quick);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The benchmarks by name: a static table, one row a benchmark.
+// The benchmarks by name.
 #pragma once
 
 #include <span>
@@ -17,7 +17,7 @@ struct Benchmark {
 
 [[nodiscard]] std::span<const Benchmark> benchmarks();
 
-// The rows' functions, each in the file of its name (the tables of a paper share one).
+// Each function is in the file of its name; a paper's tables share a file.
 RunBenchmark run_machine, run_peers, run_materials, run_peers_check, run_paper1_table1,
     run_paper1_table2, run_paper1_table3, run_paper1_table4, run_paper1_table5, run_paper1_table6,
     run_paper2, run_paper3, run_paper5_table1, run_paper5_table3, run_paper5_table4, run_auto,

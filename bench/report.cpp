@@ -20,10 +20,10 @@
 namespace rastrum::bench {
 namespace {
 
-/// Load above which times are not to be trusted: a core's worth and a bit of someone else's work.
+/// Times are unreliable above this load: our own core and a bit of other work.
 constexpr double kQuietLoad = 1.2;
 
-/// The value behind the first `key : value` line of a file of /proc; empty where there is none.
+/// The value of the first `key : value` line of a file of /proc; empty if there is none.
 std::string proc_value(const char* file, std::string_view key) {
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);)
@@ -34,7 +34,7 @@ std::string proc_value(const char* file, std::string_view key) {
   return {};
 }
 
-/// Processes that ran or wanted to over the last minute; 0 where the system does not say.
+/// The number of runnable processes, averaged over the last minute; 0 if the system does not say.
 double load_average() {
   std::ifstream in("/proc/loadavg");
   double load = 0;

@@ -13,12 +13,13 @@
 
 namespace rastrum::bench {
 
-/// A table printed row by row, so that a long run shows what it has. Numbers stand right.
+/// A table that prints each row at once, so that a long run shows its progress. Numbers are
+/// right-aligned.
 class Table {
  public:
   struct Column {
     std::string title;
-    int width = 8;  ///< characters; longer cells push the row
+    int width = 8;  ///< characters; longer cells push the rest of the row
     bool left = false;
   };
   explicit Table(std::vector<Column> columns) : columns_(std::move(columns)) {}
@@ -30,7 +31,7 @@ class Table {
   std::vector<Column> columns_;
 };
 
-/// Characters, not bytes: a text may hold ² or ×.
+/// The number of characters, not bytes: a text may hold ² or ×.
 [[nodiscard]] std::size_t characters(std::string_view text);
 
 /// `value` with `digits` significant digits, without an exponent: 0.123, 4.56, 123, 45678.
@@ -46,19 +47,19 @@ template <class Times>
 /// Millions of bytes, with three digits.
 [[nodiscard]] std::string megabytes(std::uint64_t bytes);
 
-/// `value` with as many digits as give it back, as a paper prints it: 1.02, 0.5, 16.
+/// `value` with the fewest digits that give it back, as a paper prints it: 1.02, 0.5, 16.
 [[nodiscard]] std::string shortest(double value);
 
 /// {"median_ms", "spread", "samples_ms", "cpu_median_ms"}.
 [[nodiscard]] nlohmann::json to_json(const Timing& timing);
 
-/// {"cpu", "cores", "memory_gib", "load", "compiler", "commit", "version", "date"}: what a figure
-/// needs to be read later.
+/// {"cpu", "cores", "memory_gib", "load", "compiler", "commit", "version", "date"}: the
+/// circumstances of a figure.
 [[nodiscard]] nlohmann::json machine_json();
-/// The same as text, with a warning where the machine is busy.
+/// The same as text, with a warning if the machine is busy.
 [[nodiscard]] std::string machine_text();
 
-/// Writes `document` beside `file` and renames it. Throws Error{io}.
+/// Writes `document` to a temporary file beside `file` and renames it. Throws Error{io}.
 void write_json(const std::string& file, const nlohmann::json& document);
 
 }  // namespace rastrum::bench

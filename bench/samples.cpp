@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum bench samples`: what several samples a pixel cost over one, where triangles are cut and
-// where they are not. Each picture is compared with the serial reference's before it is timed.
+// `rastrum bench samples`: the cost of several samples a pixel over one, with and without triangles
+// that are clipped. Each picture is compared with the serial reference's before the timing.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -52,7 +52,7 @@ std::vector<SampledScene> sampled_scenes(bool quick, const FrameOptions& frame) 
     const MeshView mesh = subject.mesh.view();
     const InstanceView instance{mesh};
     const SceneView view{{&instance, 1}};
-    // A hall is seen from within.
+    // A hall is seen from inside.
     subject.camera = info.name == "sponza" ? walk(view, 2).front()
                                            : fit_picture(view, {}, frame.width, frame.height);
     all.push_back(std::move(subject));

@@ -14,8 +14,8 @@
 namespace rastrum::bench {
 namespace {
 
-/// A million triangles of about a pixel at 1024²: the default camera sees the cube of the soup from
-/// a distance where a pixel is 0.0039 wide.
+/// A million triangles of about a pixel at 1024²: at the default camera's distance from the soup's
+/// cube a pixel is 0.0039 wide.
 constexpr std::string_view kScattered = "soup?count=1000000&min_size=0.004&max_size=0.0065";
 
 std::filesystem::path data_file(std::string_view name) {
@@ -51,14 +51,14 @@ const std::vector<SceneInfo>& transparency_scenes() {
   static const std::vector<SceneInfo> scenes{
       {"pine", "alpha/smallpine/scene.gltf", {}},
       {"teapot", "small/teapot.obj", {}},
-      {"boxes", {}, "boxes?count=10"},  // 12,000 triangles, as many as the paper's
+      {"boxes", {}, "boxes?count=10"},  // 12,000 triangles, the paper's number
       {"bunny", "small/stanford-bunny.obj", {}},
       {"engine", "depth/2CylinderEngine.glb", {}},
       {"hair", "depth/ratboy_mohawk_ribbons_138k.ply", {}},
       {"sponza", "sponza/sponza.obj", {}},
       {"dragon", "big/dragon_348k.ply", {}},
       {"brain", "big/brain_iso126_1033k.ply", {}},
-      {"hairball", {}, "hairball"},  // 2,880,000, as many as the paper's
+      {"hairball", {}, "hairball"},  // 2,880,000, the paper's number
   };
   return scenes;
 }
@@ -88,7 +88,7 @@ const SceneInfo& scene_by_name(std::string_view name) {
 Mesh flatten(const Scene& scene) {
   Mesh flat;
   for (const Instance& instance : scene.instances) {
-    if (instance.geometry) continue;  // triangles alone are compared
+    if (instance.geometry) continue;  // only triangles are compared
     const Mesh& mesh = scene.meshes[instance.mesh];
     const Mat4 to_world = static_cast<Mat4>(instance.object_to_world);
     if (flat.positions.size() + mesh.positions.size() > std::numeric_limits<std::uint32_t>::max())

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The scenes of the benchmarks: one mesh each, with area-weighted vertex normals that share the
-// positions' indices, and no materials, so that every peer can be given the same arrays.
+// The scenes of the benchmarks. Each is one mesh without materials, and its area-weighted vertex
+// normals share the positions' indices, so that every peer takes the same arrays.
 #pragma once
 
 #include <string_view>
@@ -22,29 +22,29 @@ struct SceneInfo {
 
 /// The scenes of `bench peers`, small to large.
 [[nodiscard]] const std::vector<SceneInfo>& peer_scenes();
-/// The scenes of `bench transparency`, small to large: paper 4's as far as there are any, then
-/// scientists' ones.
+/// The scenes of `bench transparency`, small to large: those of paper 4 that are available, then
+/// scientific ones.
 [[nodiscard]] const std::vector<SceneInfo>& transparency_scenes();
-/// Scenes that stand in where the shared data is absent.
+/// Scenes that replace the shared data if it is absent.
 [[nodiscard]] const std::vector<SceneInfo>& procedural_scenes();
-/// Too large to be drawn unless they are asked for by name.
+/// Scenes so large that they are drawn only by name.
 [[nodiscard]] const std::vector<SceneInfo>& largest_scenes();
-/// Throws Error{invalid_argument} that lists the names.
+/// Throws Error{invalid_argument}, which lists the names.
 [[nodiscard]] const SceneInfo& scene_by_name(std::string_view name);
 
 /// The geometry of a scene's instances as one mesh, in order of submission, without attributes.
 /// Throws Error{unsupported} beyond 2³² vertices.
 [[nodiscard]] Mesh flatten(const Scene& scene);
 
-/// Whether what the scene needs is here: always for shapes.
+/// Whether the scene's data is here; always true for shapes.
 [[nodiscard]] bool available(const SceneInfo& scene);
-/// Reads or makes it. Throws Error where the file is absent or broken.
+/// Reads or makes the scene. Throws Error if its file is absent or broken.
 [[nodiscard]] Mesh load(const SceneInfo& scene);
-/// The same with all that the file has: instances, materials, textures, normals of its own.
+/// The same with all that the file has: instances, materials, textures, its own normals.
 [[nodiscard]] Scene load_whole(const SceneInfo& scene);
 
-/// Cameras within a hall: along the longer side of its box, at a third of its height, looking ahead
-/// and about.
+/// Cameras inside a hall, along the longer side of its box at a third of its height, looking ahead
+/// and around.
 [[nodiscard]] std::vector<Camera> walk(const SceneView& scene, int steps);
 
 }  // namespace rastrum::bench

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum bench stages`: what a submitted triangle and a pixel cost in each stage of an opaque
-// frame on one thread, beside the budgets of issue 19; whole frames by instruction set; and every
-// built-in shader over `flat`. Every picture is first compared with plain C++'s, bit by bit.
+// `rastrum bench stages`: the cost of a submitted triangle and of a pixel in each stage of an
+// opaque frame on one thread, beside the project's budgets; whole frames by instruction set; and
+// every built-in shader over `flat`. Every picture is first compared with plain C++'s, bit by bit.
 //
-// Stages are told apart by the frame's own times (project, setup and binning) and by differences of
-// frames that differ in the shader alone, round by round. Cycles are ns times the clock that a
-// chain of dependent additions shows in the same rounds: machines of others often hide their
+// The frame's own times give the stages project, setup and binning. Frames that differ only in the
+// shader give the others, by differences round by round. Cycles are ns times the clock rate, which
+// a chain of dependent additions shows in the same rounds: hosted machines often hide their
 // counters.
 #include <algorithm>
 #include <cstdint>
@@ -32,15 +32,15 @@
 namespace rastrum::bench {
 namespace {
 
-/// Budgets in cycles, of issue 19.
+/// The project's budgets in cycles.
 constexpr double kSetupBudget = 45, kCoverBudget = 75, kAttributesBudget = 12, kLightBudget = 2;
-/// A shader may take so many times as long as `flat` and its own light.
+/// A shader may take this many times as long as `flat` plus its own light.
 constexpr double kShaderBudget = 1.3;
 
 constexpr std::uint64_t kAdditions = 1 << 21;
 
-/// kAdditions that wait for each other: one cycle each, on every processor there is. The addend is
-/// in a register, since some add constants for nothing.
+/// kAdditions dependent additions, one cycle each on every processor. The addend is in a register,
+/// since some processors add constants at no cost.
 std::uint64_t chain_of_additions() {
   std::uint64_t sum = 0, addend = 3;
   for (std::uint64_t i = 0; i < kAdditions; i += 16)
@@ -51,7 +51,6 @@ std::uint64_t chain_of_additions() {
   return sum;
 }
 
-/// A frame that takes part.
 struct ShaderEntry {
   Shader shader;
   Isa isa;
@@ -62,7 +61,7 @@ struct ShaderEntry {
   [[nodiscard]] std::string name() const {
     return std::string(rastrum::name(shader)).append(", ").append(rastrum::name(isa));
   }
-  /// The median of a stage, by the beginning of its name; 0: there is none.
+  /// The median of the stages whose names begin so; 0 if there are none.
   [[nodiscard]] double stage_ms(std::string_view begin) const {
     double sum = 0;
     for (const auto& [stage, ms] : stages_ms)
@@ -71,7 +70,7 @@ struct ShaderEntry {
   }
 };
 
-/// The median over rounds of what `more` takes longer than `less`, ms.
+/// The median over rounds of how much longer `more` takes than `less`, ms.
 double difference_ms(const Timing& more, const Timing& less) {
   std::vector<double> all;
   for (std::size_t i = 0; i < more.samples_ms.size(); ++i)
@@ -79,11 +78,10 @@ double difference_ms(const Timing& more, const Timing& less) {
   return median(std::move(all));
 }
 
-/// The tables as they grow, a scene after the other.
 struct Tables {
   Grid stages{
       "", {"scene, stage", "counted", "ms", "ns each", "cycles each", "budget", "÷ budget"}, {}};
-  Grid isas;  ///< its columns are this machine's
+  Grid isas;  ///< columns depend on this machine
   Grid shaders{"", {"scene, shader", "ms", "÷ flat", "cycles a covered pixel over flat"}, {}};
   Panel panel{"shader over flat", {}};
   std::vector<std::string> places;
@@ -105,7 +103,7 @@ class Contest {
 
   [[nodiscard]] const std::vector<Isa>& isas() const { return isas_; }
 
-  /// Whether all pictures are plain C++'s.
+  /// Returns whether all pictures equal plain C++'s.
   bool measure(const SceneInfo& info, Tables& tables) {
     const Mesh mesh = load(info);
     const MeshView view = mesh.view();
@@ -240,7 +238,7 @@ class Contest {
 
   const TableOptions& options_;
   FrameOptions frame_;
-  std::vector<Isa> isas_;  ///< with lanes, the best last
+  std::vector<Isa> isas_;  ///< those with SIMD lanes, the best last
   std::vector<ShaderEntry> entries_;
   std::vector<Timing> timings_;  ///< of the entries, then of the clock
 };

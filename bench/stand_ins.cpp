@@ -20,9 +20,9 @@ namespace rastrum::bench {
 namespace {
 
 constexpr float kWave = 0.06F;      ///< of the ball's radius
-constexpr float kShellGap = 0.04F;  ///< between nested balls, so that they do not meet at waves
+constexpr float kShellGap = 0.04F;  ///< between nested balls, so that their waves do not meet
 
-/// Splits triangles, evenly spaced over the list, at their centroids: 2 more each.
+/// Splits triangles, evenly spaced over the list, at their centroids. Each split adds 2.
 void add_pairs(Mesh& mesh, std::size_t pairs) {
   const std::size_t n = mesh.indices.size() / 3;
   if (pairs == 0) return;
@@ -45,7 +45,7 @@ void add_pairs(Mesh& mesh, std::size_t pairs) {
   mesh.indices = std::move(out);
 }
 
-/// Fills a mesh of at most `triangles` up to exactly that many.
+/// Adds triangles until there are exactly `triangles`.
 void fill_up(Mesh& mesh, std::size_t triangles) {
   const std::size_t n = mesh.indices.size() / 3;
   const std::size_t missing = triangles - n;
@@ -53,9 +53,9 @@ void fill_up(Mesh& mesh, std::size_t triangles) {
   mesh.indices.resize(triangles * 3);
 }
 
-/// One wavy ball of exactly `triangles`.
 Mesh one_ball(std::size_t triangles, float stretch, float radius) {
-  // 2 (rings − 1) segments triangles: the pair near square quads that comes nearest from below.
+  // A ball has 2 (rings − 1) segments triangles. Takes the near-square pair that comes closest from
+  // below.
   const double middle = std::sqrt(static_cast<double>(triangles) / 4);
   std::size_t rings = 2, segments = 3, best = 0;
   const auto first = static_cast<std::size_t>(std::max(2.0, middle * 0.8));
@@ -84,8 +84,8 @@ void append(Mesh& mesh, const Mesh& more) {
   for (const std::uint32_t i : more.indices) mesh.indices.push_back(base + i);
 }
 
-/// Vertices of a cell become its first one; what loses its area goes. `cells` along the longest
-/// side.
+/// Merges the vertices of each cell into its first one and drops triangles without area. `cells` is
+/// the number along the longest side.
 Mesh clustered(const Mesh& mesh, double cells) {
   const MeshView view = mesh.view();
   const InstanceView instance{view};
@@ -117,7 +117,7 @@ Mesh clustered(const Mesh& mesh, double cells) {
   return out;
 }
 
-/// Numbers in [0, 1) that are the same on every machine; <random>'s distributions are not.
+/// Numbers in [0, 1), the same on every machine, unlike <random>'s distributions.
 class Numbers {
  public:
   explicit Numbers(std::uint64_t seed) : bits_(seed) {}
@@ -136,7 +136,7 @@ Mesh ball(std::size_t triangles, float stretch, int shells) {
     throw Error(Errc::invalid_argument, "a ball has at least 8 triangles a shell");
   Mesh mesh;
   for (std::size_t k = 0; k < n; ++k) {
-    // Shares that add up to `triangles`.
+    // The shares add up to `triangles`.
     const std::size_t share = triangles * (k + 1) / n - triangles * k / n;
     append(mesh, one_ball(share, stretch, 1 - kShellGap * static_cast<float>(k)));
   }
@@ -177,7 +177,7 @@ Mesh subdivided_part(const Mesh& mesh, int times, std::size_t k, std::size_t n) 
   const std::size_t triangles = mesh.triangle_count();
   const std::size_t first = triangles * k / n, last = triangles * (k + 1) / n;
   Mesh part;
-  // Vertices are numbered in the order of their first use.
+  // Numbers vertices in the order of their first use.
   constexpr std::uint32_t kUnseen = ~std::uint32_t{0};
   std::vector<std::uint32_t> numbers(mesh.positions.size(), kUnseen);
   for (std::size_t i = first * 3; i < last * 3; ++i) {
@@ -212,7 +212,7 @@ FragmentMatch match_fragments(const Mesh& mesh, int width, int height, std::uint
         draw(renderer, {mesh.view(), match.camera, width, height}, {}, {.depth = depth}).fragments;
     return match;
   };
-  // Nearer than 0.6 the eye would be inside of a ball.
+  // Below 0.6 the eye would be inside of a ball.
   double low = 0.6, high = 64;
   FragmentMatch best = look(1);
   const auto error = [&](const FragmentMatch& m) {
@@ -235,13 +235,13 @@ Mesh sized_triangles(int width, int height, int count, double least, double most
   if (least >= most) throw Error(Errc::invalid_argument, "the picture is too small");
   Mesh mesh;
   while (mesh.triangle_count() < static_cast<std::size_t>(count)) {
-    // Areas are drawn evenly over their logarithm; the shape is what chance gives, moved and
-    // scaled to that area, if it fits.
+    // Areas are uniform in their logarithm. A random shape is moved and scaled to its area, if it
+    // fits.
     const double area = least * std::pow(most / least, numbers.unit());
     std::array<double, 6> p;
     for (double& v : p) v = numbers.unit();
     const double is = std::abs((p[2] - p[0]) * (p[5] - p[1]) - (p[4] - p[0]) * (p[3] - p[1])) / 2;
-    if (is < 0.02) continue;  // slivers stay out, they would leave the picture
+    if (is < 0.02) continue;  // slivers would leave the picture
     const double scale = std::sqrt(area / is);
     const double span_x = scale * (std::max({p[0], p[2], p[4]}) - std::min({p[0], p[2], p[4]}));
     const double span_y = scale * (std::max({p[1], p[3], p[5]}) - std::min({p[1], p[3], p[5]}));
@@ -274,7 +274,7 @@ Mesh sheets(int width, int height, int layers, int cells, Order order) {
       for (int x = 0; x <= cells; ++x) {
         const float u = static_cast<float>(x) / static_cast<float>(cells);
         const float v = static_cast<float>(y) / static_cast<float>(cells);
-        // Waves of less than half a gap: sheets come close and never meet.
+        // The waves stay below half a gap, so sheets never meet.
         const float wave = 0.4F * gap * std::sin(9 * u + static_cast<float>(layer)) *
                            std::cos(7 * v - static_cast<float>(layer));
         mesh.positions.push_back({u * static_cast<float>(width), v * static_cast<float>(height),

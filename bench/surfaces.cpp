@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum bench spheres` and `rastrum bench tubes`: many small exact surfaces. The ids of each
-// picture are compared with the serial reference's before anything is timed. Embree traces the same
-// with rays, and VTK draws spheres on llvmpipe, in turns with our frames; their pictures are
-// compared with ours first.
+// `rastrum bench spheres` and `rastrum bench tubes`: many small exact surfaces. Before the timing,
+// each picture's ids are compared with the serial reference's. Embree traces the same surfaces and
+// VTK draws the spheres on llvmpipe, in turns with our frames; their pictures are compared with
+// ours first.
 #include <algorithm>
 #include <cstdio>
 #include <vector>
@@ -31,7 +31,7 @@ struct Made {
   GeometryView geometry;
 };
 
-/// About 10 px across.
+/// Spheres about 10 px across.
 void make_spheres(Made& made, std::size_t n, int width, int height) {
   Noise noise;
   SpheresView spheres;
@@ -69,11 +69,10 @@ void make_tubes(Made& made, std::size_t n, int width, int height) {
 
 using Make = void (*)(Made&, std::size_t, int, int);
 
-/// The least share of pixels whose colours are the peer's within 4/255, or that both cover. The
-/// others lie on silhouettes, where another sphere is seen: peers compute in float32.
+/// The least share of pixels whose colours are within 4/255 of the peer's, or that both cover. The
+/// others lie on silhouettes, where the peers' float32 shows another sphere.
 constexpr double kAgreement = 0.99;
 
-/// The times of others beside ours.
 class SurfacePeers {
  public:
   explicit SurfacePeers(int threads) : embree_(threads), vtk_(threads) {}
@@ -82,8 +81,8 @@ class SurfacePeers {
            " (its sphere mapper; it has none for tubes). Ratios are paired medians.";
   }
 
-  /// Turns of `ours`, whose picture is compared with theirs first, and of those that there are:
-  /// "build", "trace" and "vtk". Whether the pictures agree goes to `right`.
+  /// Times `ours` and the available peers in turns, "build", "trace" and "vtk", after comparing
+  /// their pictures with `picture`. Clears `right` if they do not agree.
   std::vector<Timing> measure(const Made& made, const Camera& camera, const Contender& ours,
                               const Image<Rgba8>& picture, const Plan& plan, bool& right) {
     std::vector<Contender> all{ours};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum bench terrain`: what it costs that near ground is no squares. A map with sharp shadows
-// at 1920 × 1080 by each filter, from near the ground and from above. Each picture is compared with
-// that of plain code on one thread before anything is timed.
+// `rastrum bench terrain`: the cost of smooth near ground. A map with sharp shadows at 1920 × 1080
+// by each filter, from near the ground and from above. Each picture is compared with plain code's
+// on one thread before the timing.
 #include <algorithm>
 #include <string>
 #include <vector>
@@ -60,7 +60,7 @@ int run_terrain(std::span<const std::string_view> arguments) {
   bool right = true;
   struct View {
     const char* name;
-    double above, horizon;  ///< the ground, cells; of the picture's height
+    double above, horizon;  ///< above the ground, cells; of the picture's height
   };
   for (const View& view : {View{"near the ground", 4, 0.1}, View{"above", 150, 0.2}}) {
     struct Way {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum bench words`: the data-parallel words beside what one would use instead, each result
-// checked before it is timed.
+// `rastrum bench words`: the data-parallel words beside their alternatives. Each result is checked
+// before the timing.
 //
-// expand_masked against expand and filter, as in paper 1's README: segments of one length, a
-// predicate that costs a byte read and holds at random. sort_by_key against Thrust and std::sort.
-// reduce_by_index against the loop that defines it.
+// expand_masked beside expand and filter, as in paper 1's README: segments of equal length and a
+// predicate that reads one random byte. sort_by_key beside Thrust and std::sort. reduce_by_index
+// beside the loop that defines it.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -49,7 +49,7 @@ void require_equal(bool equal, const std::string& what) {
 
 // --- expand_masked ------------------------------------------------------------------------------
 
-/// Segments of one length over random bytes; an element holds where its byte is below `limit`.
+/// Segments of one length over random bytes. An element passes if its byte is below `limit`.
 struct Segments {
   const std::vector<std::uint8_t>& bytes;
   std::size_t length;
@@ -129,7 +129,8 @@ nlohmann::json bench_expand_masked(Threads& exec, const WordsOptions& options) {
 
 using Column = std::vector<std::uint32_t>;
 
-/// Times what changes its input: a fresh copy for each run, outside of the clock.
+/// Times a sort, which changes its input: each run has a fresh copy, made outside of the timed
+/// part.
 struct Sorter {
   std::string name;
   std::function<void(Column&, Column&)> sort;

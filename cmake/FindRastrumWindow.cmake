@@ -1,5 +1,5 @@
-# Finds the window's libraries: SDL2, and Dear ImGui as Debian builds it, with its SDL2 platform
-# backend in the library. Target Rastrum::Window.
+# Finds the window's libraries as target Rastrum::Window: SDL2, and Dear ImGui as Debian builds it, with its
+# SDL2 platform backend inside.
 find_package(SDL2 QUIET CONFIG)
 find_path(IMGUI_INCLUDE_DIR imgui.h PATH_SUFFIXES imgui)
 find_library(IMGUI_LIBRARY imgui)

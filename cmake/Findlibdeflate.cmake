@@ -1,4 +1,4 @@
-# libdeflate: Debian has no CMake package of it.
+# Finds libdeflate, which has no CMake package in Debian.
 find_path(libdeflate_INCLUDE_DIR libdeflate.h)
 find_library(libdeflate_LIBRARY deflate)
 mark_as_advanced(libdeflate_INCLUDE_DIR libdeflate_LIBRARY)

@@ -1,5 +1,5 @@
-# Flags that every target of the project shares. The arithmetic ones are part of the picture rules:
-# multiply and add stay apart, so that every machine gives the same bits.
+# Flags that every target of the project shares. The arithmetic flags are part of the picture rules: they
+# forbid fused multiply-add, so that every machine gives the same bits.
 add_library(rastrum_flags INTERFACE)
 
 set(cxx_flags -ffp-contract=off -fno-math-errno
@@ -8,26 +8,27 @@ if(RASTRUM_WERROR)
   list(APPEND cxx_flags -Werror)
 endif()
 target_compile_options(rastrum_flags INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:${cxx_flags}>")
-# The project's own code sees the sources; its users see include/ alone.
+# The project's own code includes its sources; users have only include/.
 target_include_directories(rastrum_flags INTERFACE ${PROJECT_SOURCE_DIR})
 
 if(RASTRUM_SANITIZE)
   set(sanitizer_flags
     -fsanitize=${RASTRUM_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   if(RASTRUM_SANITIZE MATCHES "address,undefined")
-    # The address sanitizer sees what these would, where it is read or written; they are half of the code.
+    # The address sanitizer finds the same errors when memory is read or written. These checks are half of the
+    # code.
     list(APPEND sanitizer_flags -fno-sanitize=null,object-size,vptr,pointer-overflow)
   endif()
   target_compile_options(rastrum_flags INTERFACE "$<$<COMPILE_LANGUAGE:CXX>:${sanitizer_flags}>")
   target_link_options(rastrum_flags INTERFACE -fsanitize=${RASTRUM_SANITIZE})
-  # Kernels of three instruction sets are a third of what compiling costs (simd_targets.hpp).
+  # Three instruction sets would cost a third of the compile time (simd_targets.hpp).
   target_compile_definitions(rastrum_flags INTERFACE RASTRUM_ONE_SIMD_TARGET)
 endif()
 
-# rastrum_library(TARGET NAME): one of the installed libraries, Rastrum::NAME. Modules (of devices, of Python) have a
-# copy of it in them, so that all is compiled once for programs and for them. Nobody replaces its functions at
-# run time: the compiler may go on inlining them. A section for each function lets linkers leave out what a program does
-# not call (--gc-sections). Of Highway the headers are enough: only their assertions in debug builds need its library.
+# rastrum_library(TARGET NAME): one of the installed libraries, Rastrum::NAME. Device and Python modules
+# contain a copy of it, so its code is position-independent and compiled only once. Functions cannot be
+# replaced at run time, so the compiler may inline them. A section for each function lets linkers drop unused
+# ones (--gc-sections). Highway's headers are enough: only their assertions in debug builds need its library.
 function(rastrum_library target name)
   add_library(Rastrum::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)

@@ -1,12 +1,13 @@
-# Installation: the public headers, libraries, programs, examples, pages, and packages for find_package(Rastrum) and for
-# pkg-config: of the static libraries or, with BUILD_SHARED_LIBS, of librastrum.so, by the same names.
+# Installs the public headers, libraries, programs, examples and pages, and packages for find_package(Rastrum)
+# and pkg-config. They are for the static libraries or, with BUILD_SHARED_LIBS, for librastrum.so, by the same
+# names.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/Rastrum)
 
-# A static library leaves its own libraries to whoever links it. For each target that one may link: the package that
-# find_package finds it in, and how a compiler's command line names it (headers alone: not at all).
+# A static library leaves its dependencies to its users. For each possible dependency: its package for
+# find_package, and its flags on a compiler's command line (none for headers only).
 macro(rastrum_external target package flags)
   set(package_${target} "${package}")
   set(flags_${target} "${flags}")
@@ -23,7 +24,8 @@ rastrum_external(draco::draco "draco CONFIG" -ldraco)
 rastrum_external(nlohmann_json::nlohmann_json "nlohmann_json CONFIG" "")
 rastrum_external(MPI::MPI_CXX "MPI COMPONENTS CXX" "")
 
-# What `target` links beside Rastrum: packages (a list), and as a compiler's command line says it, itself first.
+# Sets what `target` links beside Rastrum: a list of packages, and compiler flags, with the target's own
+# first.
 function(rastrum_links target packages flags)
   get_target_property(type ${target} TYPE)
   if(type STREQUAL "STATIC_LIBRARY")
@@ -33,7 +35,7 @@ function(rastrum_links target packages flags)
     set(said -lrastrum)
   endif()
   foreach(link IN LISTS links)
-    # "::@(…)" marks the folder whose CMakeLists.txt linked the library that follows.
+    # "::@(…)" marks the folder whose CMakeLists.txt linked the following library.
     if(link MATCHES "_INTERFACE:|^::@" OR link STREQUAL "rastrum")
       continue()
     elseif(NOT DEFINED package_${link})
@@ -46,8 +48,8 @@ function(rastrum_links target packages flags)
   set(${flags} "${said}" PARENT_SCOPE)
 endfunction()
 
-# rastrum_part(PART DESCRIPTION TARGET…): a component of the package that rastrum_package makes, a file of targets and one
-# for pkg-config. The first target is its library.
+# rastrum_part(PART DESCRIPTION TARGET…): a component of the package, with a file of targets and a pkg-config
+# file. The first target is its library.
 macro(rastrum_part part description target)
   rastrum_links(${target} packages PC_LIBS)
   list(JOIN packages "\" \"" packages)
@@ -68,7 +70,7 @@ macro(rastrum_part part description target)
   install(FILES ${folder}/${PC_NAME}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig ${rules})
 endmacro()
 
-# rastrum_package(static|shared RULE…): what differs between the packages; each install() is told RULE.
+# rastrum_package(static|shared RULE…): the part that differs between the packages. Each install() gets RULE.
 function(rastrum_package kind)
   set(rules ${ARGN})
   set(folder ${PROJECT_BINARY_DIR}/package/${kind})
@@ -78,7 +80,7 @@ function(rastrum_package kind)
   set(about_core "Software rendering: arrays in, arrays out")
   set(about_io "Rastrum's files")
   if(kind STREQUAL "static")
-    # C++'s own libraries, which linkers that are called for C or Fortran do not add.
+    # C++'s own libraries, which linkers do not add for C or Fortran programs.
     set(RASTRUM_CXX_LIBRARIES ${CMAKE_CXX_IMPLICIT_LINK_LIBRARIES})
     list(FILTER RASTRUM_CXX_LIBRARIES INCLUDE REGEX "^(stdc\\+\\+|c\\+\\+|c\\+\\+abi|m)$")
     rastrum_part(rastrum "${about_core}" rastrum rastrum_shaders ${device})
@@ -96,8 +98,8 @@ function(rastrum_package kind)
   install(FILES ${folder}/RastrumConfig.cmake DESTINATION ${package_dir} ${rules})
 endfunction()
 
-# Programs look for the library of device code by its name (parallel/cuda/library.hpp): those that
-# are installed here, and those that link the package, wherever that lies.
+# Programs that are installed here, or that link the package anywhere, look for the library of device code by
+# its name (parallel/cuda/library.hpp).
 set(device "")
 if(TARGET rastrum_cuda)
   set(device rastrum_cuda)
@@ -128,11 +130,11 @@ endif()
 
 install(DIRECTORY examples/ DESTINATION ${CMAKE_INSTALL_DATADIR}/rastrum/examples
   FILES_MATCHING PATTERN "*.cpp" PATTERN "*.c" PATTERN "*.f90" PATTERN CMakeLists.txt PATTERN inside EXCLUDE)
-# Pages without their pictures, and without what the project tells itself.
+# Pages without pictures, and without those for the project's developers.
 file(GLOB pages CONFIGURE_DEPENDS docs/*.md)
 list(FILTER pages EXCLUDE REGEX "/architecture.md$")
 install(FILES ${pages} CHANGELOG.md LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
-# Licences of the font whose outlines are in the library, and of the library's colour maps.
+# Licences of the font and the colour maps that the library contains.
 install(FILES rastrum/overlay/font/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME LICENSE.DejaVu)
 install(FILES rastrum/scene/color_maps/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME LICENSE.colour_maps)
 if(TARGET rastrum_program)

@@ -1,5 +1,5 @@
-# Compiles for AArch64 with Debian's cross compiler, against what tools/aarch64_root.sh has fetched,
-# and runs tests in qemu-user (`./dev check --full`).
+# Cross-compiles for AArch64 with Debian's compiler and the root of tools/aarch64_root.sh, and runs tests in
+# qemu-user (`./dev check --full`).
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Feeds random text to one parser of the program's options or files (chosen when compiling). An
-// Error or a UsageError is a right answer.
+// Feeds random text to one parser of the program's options or files, which is chosen when
+// compiling. An Error or a UsageError is a right answer.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -46,7 +46,7 @@ void run(const std::string& text) {
   }
   (void)cli::read_terrain_path(file, {});
 #elif defined(RASTRUM_FUZZ_light_spec)
-  // The renderer takes every light that is parsed, or throws. Environments are large files.
+  // The renderer must take every parsed light or throw. Skips environments, which are large files.
   if (text.find("environment") != std::string::npos) return;
   FrameOptions frame;
   frame.lights.push_back(cli::parse_light(text));

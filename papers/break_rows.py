@@ -1,17 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Breaks rows of the coverage × visibility table on purpose and sees that only their tests fail.
+"""Breaks rows of the coverage × visibility table on purpose and checks that only their tests fail.
 
 usage: break_rows.py [--list] [NAME...]
 
-Each break replaces one text of one source file, builds table_test and the tests of the broken axis,
-and compares the rows whose tests fail with those that it should break: five names are five
-algorithms. Code that rows share is broken, too, to show which rows it reaches. Without names all
-breaks are made, which takes half an hour on two busy cores and less with what ccache knows.
+A break replaces one text of one source file and builds table_test and the tests of the broken axis.
+The rows whose tests fail must be those that it should break. Code that rows share is broken too, to
+show which rows it reaches. Without names all breaks run: half an hour on two busy cores, less with
+a warm ccache.
 
 Works on HEAD in a Git worktree of its own, build/break-rows, which is removed at the end and after
-^C; the caller's sources are not touched. Prints a table in Markdown; exits with 1 where rows failed
-that should not, or the other way round.
+^C; the caller's sources are not touched. Prints a table in Markdown. Exits with 1 if other rows
+failed than should.
 """
 import dataclasses
 import json
@@ -110,7 +110,7 @@ BREAKS = (
           ("grouped",), ("atomic", "search", "sorted", "hashed"),
           why="tuple takes no finished keys: it has to shade"),
 
-    # Code that coverages share: the papers build one on the other.
+    # Code that coverages share: the papers build on each other.
     Break("blocks of small boxes", "papers/axes/boxes.hpp",
           "(box.x1 - 1) / kBlockSize - bx + 1,", "(box.x1 - 1) / kBlockSize - bx,",
           ("pineda", "hybrid"), why="both draw small triangles so (paper 1, table 5)"),
@@ -203,7 +203,7 @@ def build():
 
 
 def failed_cases(program, tests):
-    """The names of those of a program's tests that failed."""
+    """Returns the names of a program's tests that failed."""
     report = BUILD / f"{program}.json"
     report.unlink(missing_ok=True)
     command = [BUILD / "tests" / program.removesuffix("_test") / program,
@@ -218,7 +218,7 @@ def failed_cases(program, tests):
 
 
 def row_of(case):
-    """The row that a case of a unit test is about; its own name where it is about none."""
+    """Returns the row that a unit test's case is about, or the case's own name."""
     for row in COVERAGES + VISIBILITIES:
         if re.search(rf"/{row}$|\b{row}|\.{row}", case, re.IGNORECASE):
             return row
@@ -233,7 +233,7 @@ def broken_rows(axis):
 
 
 def check(b):
-    """Breaks, builds, tests, restores. Returns (points, units)."""
+    """Breaks, builds, tests and restores. Returns (points, units)."""
     file = TREE / b.file
     source = file.read_text()
     if source.count(b.text) != 1:
@@ -247,7 +247,7 @@ def check(b):
 
 
 def describe(points):
-    """Points as rows × columns where they are."""
+    """Describes points as rows × columns where they are a full rectangle."""
     coverages = [c for c in COVERAGES if any(p.startswith(c + "_") for p in points)]
     visibilities = [v for v in VISIBILITIES if any(p.endswith("_" + v) for p in points)]
     if len(points) != len(coverages) * len(visibilities):

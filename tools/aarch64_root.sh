@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Fetches what Rastrum links for AArch64 from Debian's mirrors and unpacks it, without root and without
-# telling this machine's package manager: it goes on knowing one architecture.
+# Fetches Rastrum's dependencies for AArch64 from Debian's mirrors and unpacks them, without root.
+# The machine's package manager keeps its one architecture.
 #
 # usage: aarch64_root.sh FOLDER   (FOLDER/usr is then what cmake/aarch64.cmake looks into)
 set -euo pipefail
@@ -25,8 +25,8 @@ options=(-o APT::Architecture=arm64 -o APT::Architectures=arm64 -o "Dir::State::
 apt-get "${options[@]}" -qq update
 (cd "$root/debs" && apt-get "${options[@]}" -qq download "${packages[@]}")
 for deb in "$root"/debs/*.deb; do dpkg -x "$deb" "$root"; done
-# Headers that differ between architectures lie a folder deeper, where the cross compiler looks in its
-# own root alone.
+# Headers that depend on the architecture are one folder deeper, where the cross compiler looks only
+# in its own root.
 cp -r "$root"/usr/include/aarch64-linux-gnu/. "$root/usr/include/"
 # /lib is /usr/lib, as on an installed system.
 cp -a "$root/lib/." "$root/usr/lib/"

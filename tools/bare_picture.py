@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Five lines of rastrum in a root that has Python alone (./dev bare), and what is loaded then. usage: bare_picture.py [MESH]"""
+"""Draws a picture with five lines of rastrum in a root that has only Python (./dev bare), and prints what was loaded.
+
+usage: bare_picture.py [MESH]
+"""
 import sys
 import time
 

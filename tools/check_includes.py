@@ -1,24 +1,26 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Checks that a floor of rastrum/ includes only the floors that it may stand on, a room of
-rastrum/raster/, papers/ or apps/rastrum/ only the rooms before it, that headers of SIMD code stand
-alone, and that the modules of python/rastrum form no circle.
+"""Checks the includes of the sources: which files may include which.
 
 usage: check_includes.py [--picture] ROOT
 
-The floors and why they lie so are in docs/architecture.md. The rules: a file of rastrum/ includes
-files of the project as <rastrum/...>, and only from the floors listed for its own; a file of a room
-includes its own room and rooms that stand before it in ROOMS; a public header (include/rastrum/),
-which is installed, includes public and standard headers alone, and belongs to a floor; that of C,
-include/rastrum.h, includes headers of C alone, and is the floor c's; programs and examples include
-public headers, but for what is listed here with its reason. Nothing of rastrum/ includes papers/.
-The picture of the rooms in docs/frames.md is the one that --picture prints.
-A header that is compiled for each instruction set, NAME-inl.hpp, has Highway's guard, named by its
-path, and a namespace of its own; no code of an instruction set includes anything but bodies
-(NAME.inl), which include nothing else (decision 0124).
-A module of python/rastrum imports others of it at its top alone: inside of functions stand imports
-of packages that need not be there, and of Python's own that few calls need.
-Prints one line per violation; exits with 1 where there are any.
+docs/architecture.md explains the floors, which are the folders of rastrum/. A folder of rastrum/raster/, papers/ or
+apps/rastrum/ is a room. The rules:
+
+- A file of rastrum/ includes files of the project as <rastrum/...>, and only from the floors listed for its own.
+  Nothing of rastrum/ includes papers/.
+- A file of a room includes its own room and the rooms before it in ROOMS. --picture prints the picture of the rooms in
+  docs/frames.md, which must be equal.
+- A public header (include/rastrum/) includes only public and standard headers and belongs to a floor. The C header,
+  include/rastrum.h, includes only C's headers and belongs to the floor c.
+- Programs and examples include public headers, and the exceptions that are listed here with their reason.
+- A header that is compiled for each instruction set, NAME-inl.hpp, has Highway's guard, named by its path, and a
+  namespace of its own. Code of an instruction set includes only bodies (NAME.inl), which include nothing (decision
+  0124).
+- A module of python/rastrum imports other modules of it at its top, without a circle. Imports inside of functions are
+  for optional packages, and for Python's own that few calls need.
+
+Prints one line per violation; exits with 1 if there are any.
 """
 import ast
 import graphlib
@@ -33,32 +35,34 @@ MAY_INCLUDE = {
     "raster": {"core", "parallel", "scene"},
     "transparency": {"core", "parallel", "scene", "raster"},
     "terrain": {"core", "parallel", "scene"},
-    # Functions on finished pictures: what drew them is none of its business.
+    # Works on finished pictures, whatever drew them.
     "overlay": {"core", "parallel", "scene"},
-    # Files in, images out: what draws them is none of its business, so a reader can be used alone.
+    # Files in, images out. It includes nothing that draws, so a reader can be used alone.
     "io": {"core", "parallel", "scene"},
     "render": {"core", "parallel", "scene", "raster", "transparency", "terrain", "overlay",
                "io"},
     "ranks": {"core", "parallel", "scene", "raster", "transparency", "overlay", "render"},
-    # Part of rastrum_io, the library that knows files.
+    # Part of rastrum_io, the library of files.
     "out_of_core": {"core", "parallel", "scene", "raster", "transparency", "render", "ranks", "io"},
-    # A library of its own, where there is an MPI; nothing includes it.
+    # A library of its own, built if there is an MPI. Nothing includes it.
     "mpi": {"core", "ranks"},
     # The C interface, <rastrum.h>: nothing includes it.
     "c": {"core", "parallel", "scene", "raster", "render"},
     # The library of device code, opened by its file's name: nothing includes it.
     "cuda": {"core", "parallel", "render", "terrain"},
 }
-# Folders in the order of their rooms. Data walks through those of a frame in this order; a paper may stand on an earlier one.
+# Folders in the order of their rooms, in which a frame's data passes through them. A paper may build on an
+# earlier one.
 ROOMS = {
     "rastrum/raster": ["rules", "kernels", "draws", "surface", "shade", "context", "setup", "cull", "cover", "bin", "resolve", "frame",
                        "cuda"],
     "papers": ["include", "axes", "paper1", "paper2", "paper3", "paper4", "paper5", "table", "models"],
 }
-# Those of apps/rastrum/: from the command line to files. The files beside them and window/ include all of them.
+# The rooms of apps/rastrum/, from the command line to files. The files beside them and window/ include all of
+# them.
 PROGRAM_ROOMS = ["parse", "job", "frame", "files"]
 PAGE = "docs/frames.md"
-# The public headers, include/rastrum/NAME.hpp, by the floor that has their sources.
+# The public headers, include/rastrum/NAME.hpp, by the floor of their sources.
 PUBLIC = {
     "core": {"array", "color", "config", "digest", "error", "function", "held", "image", "mat", "path", "scalars", "transform",
              "vec", "version"},
@@ -74,12 +78,12 @@ PUBLIC = {
     "out_of_core": {"out_of_core"},
 }
 FLOOR_OF = {f"{name}.hpp": floor for floor, names in PUBLIC.items() for name in names}
-# Internal headers, which users of the library do not have. Decision 0025 says why the program may include them.
+# Internal headers, which are not installed. Decision 0025 says why the program may include them.
 PROGRAMS_MAY = {
     "apps": {"rastrum/core/angle.hpp", "rastrum/core/elementary.hpp", "rastrum/core/nearest_word.hpp", "rastrum/core/srgb.hpp",
              "rastrum/io/files.hpp", "rastrum/io/mapped_file.hpp", "rastrum/mpi/mpi_ranks.hpp", "rastrum/parallel/exec.hpp",
              "rastrum/raster/context/target_table.hpp", "rastrum/raster/rules/clip.hpp", "rastrum/raster/rules/srgb.hpp"},
-    # This header is not installed, since it needs the MPI of the machine it is built on.
+    # Not installed, since it needs the MPI of the machine it is built on.
     "examples": {"rastrum/mpi/mpi_ranks.hpp"},
 }
 C_HEADER = "rastrum.h"
@@ -112,7 +116,7 @@ def violations_of_line(root, file, floor, line):
 
 
 def room_of(path):
-    """The folder of rooms and the room of a path such as rastrum/raster/bin/groups.hpp; None outside of the rooms."""
+    """Returns the folder of rooms and the room of a path such as rastrum/raster/bin/groups.hpp, or None."""
     for folder in ROOMS:
         if path.startswith(f"{folder}/") and path.count("/") > folder.count("/") + 1:
             return folder, path[len(folder) + 1:].split("/")[0]
@@ -120,7 +124,7 @@ def room_of(path):
 
 
 def violations_of_room(path, line):
-    """Yields what is wrong with one line of a file between the rooms of a folder."""
+    """Yields what is wrong with one line of a file of a room."""
     match = INCLUDE.match(line)
     room, target = room_of(path), room_of(match.group(2)) if match else None
     if room is None or target is None or target == room or target[0] != room[0]:
@@ -135,7 +139,7 @@ def violations_of_room(path, line):
 
 
 def picture(root):
-    """Rooms down, the rooms that they include across: a mark above the diagonal would be a way back."""
+    """Returns a table of rooms (down) and the rooms that they include (across). A mark above the diagonal is a way back."""
     folder = "rastrum/raster"
     marks, rooms = set(), ROOMS[folder]
     for file in sorted((root / folder).rglob("*")):
@@ -152,26 +156,26 @@ def picture(root):
 
 
 def violations_of_page(root):
-    """Yields where the page's picture of the rooms is not true of the includes."""
+    """Yields where the page's picture of the rooms differs from the includes."""
     page = root / PAGE
     if page.is_file() and picture(root) not in page.read_text(encoding="utf-8"):
         yield f"{PAGE}:1: its picture of the rooms is not what `tools/check_includes.py --picture .` prints"
 
 
 def is_public(path):
-    """Whether an include names a public header."""
+    """Returns whether an include names a public header."""
     return path.startswith("rastrum/") and path.count("/") == 1
 
 
 def violations_of_public_line(line):
-    """Yields what is wrong with one line of a public header beside its floor."""
+    """Yields what is wrong with one line of a public header, apart from floors."""
     match = INCLUDE.match(line)
     if match and not is_public(match.group(2)) and re.search(r"[/.]", match.group(2)):
         yield f"a public header may not include <{match.group(2)}>, which is not installed"
 
 
 def violations_of_lanes(path, text):
-    """Yields line and message of what keeps a file of SIMD code from standing alone."""
+    """Yields line and message for each violation of the rules of SIMD code."""
     is_body = path.endswith(".inl")
     in_lanes = is_body
     for number, line in enumerate(text.splitlines(), 1):
@@ -191,7 +195,7 @@ def violations_of_lanes(path, text):
 
 
 def violations_of_program_room(root, file, path):
-    """Yields what is wrong where `file` includes `path`, between the rooms of apps/rastrum/."""
+    """Yields what is wrong if `file` includes `path`, both of rooms of apps/rastrum/."""
     program = root / "apps" / "rastrum"
     room = file.relative_to(program).parts[0] if file.is_relative_to(program) else ""
     if room not in PROGRAM_ROOMS or (file.parent / path).is_file() or not (program / path).is_file():
@@ -201,7 +205,7 @@ def violations_of_program_room(root, file, path):
 
 
 def violations_of_programs(root):
-    """The same as violations() for those who use the library as others do."""
+    """The same as violations() for programs and examples, which use the library as users do."""
     for folder, may in PROGRAMS_MAY.items():
         for file in sorted((root / folder).rglob("*")):
             if file.suffix not in ENDINGS or "inside" in file.relative_to(root).parts:
@@ -238,7 +242,7 @@ def violations_of_modules(root):
 
 
 def violations_of_c_header(root):
-    """Yields what the header of C includes that is not C's."""
+    """Yields what the C header includes that is not C's."""
     file = root / "include" / C_HEADER
     for number, line in enumerate(file.read_text(encoding="utf-8").splitlines() if file.is_file() else (), 1):
         if (match := INCLUDE.match(line)) and match.group(2) not in OF_C:
@@ -255,7 +259,7 @@ def violations(root):
 
 
 def violations_of_file(root, folder, file):
-    """Yields lines and what is wrong with them."""
+    """Yields (line, message) for each violation of a file."""
     path = file.relative_to(root).as_posix()
     public = folder == "include/rastrum"
     floor = FLOOR_OF.get(file.name) if public else path.split("/")[1]

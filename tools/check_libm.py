@@ -1,15 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Checks that nothing on the way to a pixel calls what a libm rounds as it likes.
+"""Checks that no code that decides a pixel calls functions whose rounding depends on the libm.
 
 usage: check_libm.py ROOT
 
-Versions of a libm differ in the last bits of sines, powers and their kin, and so would pictures.
-rastrum/core/elementary.hpp has the same functions with the same bits everywhere (decision 0030).
-Functions that C and IEEE define exactly may be called: sqrt, fabs, floor, fmod, ldexp, nearbyint
-and so on.
-Looks at include/, papers/, rastrum/ and apps/ but for what is excepted here with its reason; comments and strings do
-not count. Prints one line per call; exits with 1 where there are any.
+Versions of a libm differ in the last bits of sines, powers and the like, and so would pictures.
+rastrum/core/elementary.hpp has the same functions with the same bits everywhere (decision 0030). Functions that C and
+IEEE define exactly are allowed: sqrt, fabs, floor, fmod, ldexp, nearbyint and so on.
+Looks at include/, papers/, rastrum/ and apps/, but for the exceptions here; comments and strings do not count.
+Prints one line per call; exits with 1 if there are any.
 """
 import re
 
@@ -17,14 +16,14 @@ import checks
 
 FUNCTIONS = """sin cos tan asin acos atan atan2 sinh cosh tanh asinh acosh atanh exp exp2 expm1 log
 log2 log10 log1p pow cbrt hypot fma erf erfc tgamma lgamma sincos rsqrt""".split()
-# A folder or a file, and why it may call them.
+# Folders or files, and why they may call them.
 EXCEPTIONS = {
     "papers/models/": "what is predicted of other machines is no picture",
     "apps/rastrum/window/": "what a hand moves, or the clock, is another picture each time",
 }
 ENDINGS = {".hpp", ".cpp", ".h", ".inl", ".cu", ".cuh"}
 NAMES = "|".join(FUNCTIONS)
-# std::sin, called or named; sin(…) of the global namespace, where it is no member and no definition.
+# std::sin, called or named; sin(…) of the global namespace, unless it is a member or a definition.
 CALL = re.compile(rf"\bstd::(?:{NAMES}|lerp)[fl]?\b"
                   rf"|(?<![\w.>:])(?:::\s*)?(?:{NAMES})[fl]?\s*\(")
 DEFINITION = re.compile(r"\b(?:double|float|auto|void|F)\s*$")

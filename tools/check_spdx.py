@@ -1,15 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Checks that each source file begins with its licence, and adds the line.
+"""Checks that each source file begins with its licence, or adds the line.
 
 usage: check_spdx.py ROOT
        check_spdx.py --add ROOT
 
-The line is "SPDX-License-Identifier: BSD-3-Clause" as a comment. It is the first one, or the second one of scripts that
-begin with "#!". Sources are C++, C, CUDA, Fortran, Python and Bash. CMake's files have none, since the digest of what
-nvcc compiles counts their comments; neither have tables that were made of others' data (.inc), which name their own
-licence.
-Prints one line per violation; exits with 1 where there are any.
+The line is the comment "SPDX-License-Identifier: BSD-3-Clause", the first one, or the second after "#!". Sources are
+C++, C, CUDA, Fortran, Python and Bash. CMake's files have none, because the digest of what nvcc compiles counts their
+comments. Tables made of others' data (.inc) name their own licence.
+Prints one line per violation; exits with 1 if there are any.
 """
 import pathlib
 import sys
@@ -23,14 +22,14 @@ LINE = "SPDX-License-Identifier: BSD-3-Clause"
 
 
 def sources(root):
-    """[(file, its line)]"""
+    """Returns [(file, its licence line)]."""
     scripts = [root / "dev", root / ".ci" / "run"]
     found = [(file, MARKS[file.suffix]) for folder in FOLDERS for file in sorted((root / folder).rglob("*")) if file.suffix in MARKS]
     return [(file, f"{mark} {LINE}\n") for file, mark in [*found, *((file, "#") for file in scripts if file.is_file())]]
 
 
 def parts(text):
-    """("#!…" line or "", the rest)"""
+    """Returns ("#!…" line or "", the rest)."""
     end = text.find("\n") + 1 if text.startswith("#!") else 0
     return text[:end], text[end:]
 

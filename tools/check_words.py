@@ -1,15 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Counts what a machine can count of plain words, in the pages and the comments of C++ sources.
+"""Checks two rules of plain words, in the pages and in the comments of C++ sources.
 
 usage: check_words.py ROOT
 
-The pages are *.md, docs/*.md and docs/site/*.md (docs/decisions and docs/log are records,
-which are not looked at). There are two rules. No sentence begins with a bare "Of", "Who", "What" or
-"Those", unless it is a question. No line is longer than 160 characters. Sentences in code and headings do
-not count. Rows of tables may be longer, because Markdown cannot break them. So may lines that one link
-or one word fills.
-Prints one line per violation; exits with 1 where there are any.
+No sentence begins with a bare "Of", "Who", "What" or "Those", unless it is a question. No line is longer than 160
+characters, except rows of Markdown tables and lines that one link or one word fills. Code and headings are not
+checked. The pages are *.md of the root, of docs/, docs/site/ and docs/decisions/, and the READMEs of papers/.
+Prints one line per violation; exits with 1 if there are any.
 """
 import re
 
@@ -25,7 +23,7 @@ COMMENT = re.compile(r"^(?P<code>.*?)(?P<mark>///<|///|//)(?P<text>.*)$")
 
 
 def page_blocks(lines):
-    """Yields the prose of a page: lists of (line number, text), one for each paragraph or cell."""
+    """Yields the prose of a page: a list of (line number, text) for each paragraph or cell."""
     block, in_code = [], False
     for number, line in enumerate(lines, 1):
         fence = line.lstrip().startswith("```")

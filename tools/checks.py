@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The command line of the checks of the tree: each names a folder and prints what it finds, a line each."""
+"""The shared command line of the tree's checks: the argument is a folder, and each line of output is a finding."""
 import pathlib
 import sys
 
 
 def main(usage, violations):
-    """Prints violations(root) and exits with 1 where there are any; `usage`: for another command line."""
+    """Prints violations(root) and exits with 1 if there are any. Prints `usage` for a wrong command line."""
     if len(sys.argv) != 2:
         sys.exit(usage)
     found = list(violations(pathlib.Path(sys.argv[1]).resolve()))

@@ -1,15 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Writes the colour maps' table, rastrum/scene/color_maps/tables.inc, and samples of the published
-ones for its test, tests/scene/color_maps_published.inc.
+"""Writes the colour maps' table, rastrum/scene/color_maps/tables.inc, and samples of the published maps for its
+test, tests/scene/color_maps_published.inc.
 
-usage: color_maps.py ROOT      (needs matplotlib; nothing of the build runs this)
+usage: color_maps.py ROOT      (needs matplotlib; no build runs this)
 
-Read from Matplotlib 3.9.2's own tables (matplotlib/_cm.py, _cm_listed.py), which carry them as their
-authors published them; who these are and under which licence is rastrum/scene/color_maps/LICENSE.
-Published colours are kept as they are, at even steps, to be blended linearly: 256 or 510 of listed
-maps, 9 or 11 of ColorBrewer's, the 33 of coolwarm. Maps that are given as broken lines whose corners
-lie at no even steps (jet, hot, bone, hsv) are sampled at 256. In 8 bits, nearest.
+Reads the tables of Matplotlib 3.9.2 (matplotlib/_cm.py, _cm_listed.py), which has the maps as their authors published
+them; rastrum/scene/color_maps/LICENSE names authors and licences. Published colours are kept at even steps and
+blended linearly: 256 or 510 of listed maps, 9 or 11 of ColorBrewer's, the 33 of coolwarm. Maps made of line segments
+whose corners lie at uneven steps (jet, hot, bone, hsv) are sampled at 256. Colours are rounded to 8 bits.
 """
 import pathlib
 import sys
@@ -28,13 +27,13 @@ SAMPLES = 18
 
 
 def published(name):
-    """Matplotlib's own colours of a map, N × 3, float64: what it draws the value i/(N − 1) with."""
+    """Returns Matplotlib's own colours of a map, N × 3, float64: colour i is that of the value i/(N − 1)."""
     colors = colormaps[name].copy()
     return np.array([colors(i)[:3] for i in range(colors.N)])
 
 
 def kept(name):
-    """The colours that the table has."""
+    """Returns the colours for the table."""
     data = _cm.datad.get(name)
     if isinstance(data, tuple):  # ColorBrewer's
         return np.array(data)

@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Says whether what nvcc compiles has changed since it was last compiled.
+"""Says whether the sources for nvcc have changed since they were last compiled.
 
 usage: cuda_sources.py changed|record ROOT
 
-All .cu files of the project and what they include, comments left out, have one digest.
-`record` writes it into tests/cuda/compiled.txt, after nvcc has compiled them (`./dev cuda` does
-both); `changed` prints a line and exits with 1 where the digest is another one now. So CI compiles
-for devices, which takes minutes, just where a change asks for it.
+All .cu files of the project and what they include, without comments, have one digest. `record` writes it into
+tests/cuda/compiled.txt after nvcc has compiled them (`./dev cuda` does both). `changed` prints a line and exits with 1
+if the digest differs. So CI compiles for devices, which takes minutes, only if a change needs it.
 """
 import hashlib
 import pathlib
@@ -18,7 +17,7 @@ INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*[<"]([^>"]+)[>"]', re.MULTILIN
 COMMENT = re.compile(r"//[^\n]*")
 FOLDERS = ("rastrum", "papers", "bench", "tests")
 BUILD = ("cmake/RastrumCuda.cmake", "rastrum/cuda/CMakeLists.txt")
-NOT_NVCCS = ("rastrum/parallel/cuda/system_cpu.cuh",)  # the half of system.cuh that nvcc does not take
+NOT_NVCCS = ("rastrum/parallel/cuda/system_cpu.cuh",)  # the half of system.cuh that nvcc does not compile
 RECORD = pathlib.Path("tests/cuda/compiled.txt")
 
 
@@ -28,7 +27,7 @@ def device_files(root):
 
 
 def closure(root, files):
-    """They and every file of the project that nvcc includes for them, directly or not."""
+    """Returns the files and every file of the project that nvcc includes for them, directly or not."""
     waiting, found = list(files), set()
     left_out = {(root / file).resolve() for file in NOT_NVCCS}
     while waiting:
@@ -43,7 +42,7 @@ def closure(root, files):
 
 
 def digest(root, files):
-    """Hexadecimal SHA-256 of the files' names and texts, comments left out."""
+    """Returns the hexadecimal SHA-256 of the files' names and texts, without comments."""
     total = hashlib.sha256()
     for file in files:
         text = COMMENT.sub("", file.read_text(encoding="utf-8"))

@@ -1,23 +1,22 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs what README.md and docs/*.md tell people to type, and compares the pictures beside it.
+"""Runs the commands in README.md and docs/*.md, and compares the pictures that they draw with the pages'.
 
 usage: docs.py check|accept [--build DIR] [PAGE...]
        docs.py links
        docs.py compile COMPILER [FLAG...]
 
-Every ```sh block of a page is run, in order, in an empty folder of the page's own. A picture that a
-command leaves there is the page's picture of the same file name (images/NAME.png), and must be equal
-to it within 1/255 a channel; every picture of a page is drawn by its commands. Files that nobody has
-(dragon.ply, alps.png, ...) are the stand-ins of docs_files.py under those names; launchers that start
-programs elsewhere (sbatch, mpirun, docker, ssh) are stand-ins that start them here, once. Commands that
-cannot be run here do not stand in a ```sh block.
-`accept` makes the drawn pictures the pages'. `links` checks that files and headings which pages name are
-there, pages that sources name too, and that no picture is left over. DIR is where the program was built
-(build/release).
-`compile` gives all ```cpp blocks to the compiler as one source, each in a namespace of its own. A block is
-what it is at file scope if a function stands in it, else the inside of a function. Names that it does not
-declare are those of tests/docs/pages.hpp. Blocks that use MPI are left out where there is no mpi.h.
+`check` runs every ```sh block of a page, in order, in an empty folder for the page. A picture that a command leaves
+there must equal the page's picture of the same name (images/NAME.png) within 1/255 a channel, and each picture of a
+page must be drawn. Files that a reader does not have (dragon.ply, alps.png, ...) are docs_files.py's stand-ins;
+launchers that start programs elsewhere (sbatch, mpirun, docker, ssh) are stand-ins that start them here, once. Commands
+that cannot run here are not in ```sh blocks. DIR is where the program was built (build/release).
+`accept` makes the drawn pictures the pages'.
+`links` checks that the files and headings that pages name exist, and the pages that sources name, and that every
+picture is used.
+`compile` compiles all ```cpp blocks as one source, each in a namespace of its own. A block with a function is at file
+scope, any other is the inside of a function. Names that it does not declare come from tests/docs/pages.hpp. Blocks that
+use MPI are left out if there is no mpi.h.
 """
 import os
 import pathlib
@@ -46,19 +45,19 @@ TYPED = re.compile(r"(?: {4,}|\t)(?:\$ )?(?:\./dev|rastrum) ")
 
 
 def pages():
-    """The pages whose commands are run."""
+    """Returns the pages whose commands are run."""
     return ["README.md"] + sorted(f"docs/{p.name}" for p in (ROOT / "docs").glob("*.md"))
 
 
 def all_pages():
-    """The pages whose links are checked: the log, the decisions, the other pages of the root and the folders' READMEs too."""
+    """Returns the pages whose links are checked: also the log, the decisions, other pages of the root and READMEs of folders."""
     inside = [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*/*.md")]
     return pages() + sorted(str(p.relative_to(ROOT)) for p in inside if p.name != "README.md" or p.parent != ROOT) + [
         str(p.relative_to(ROOT)) for folder in ("*", "papers/*") for p in sorted(ROOT.glob(f"{folder}/README.md"))]
 
 
 def sources():
-    """The files whose comments may name pages."""
+    """Returns the files whose comments may name pages."""
     folders = ("apps", "bench", "cmake", "examples", "include", "papers", "rastrum", "tests", "tools")
     endings = {".hpp", ".cpp", ".h", ".c", ".f90", ".inl", ".cuh", ".cu", ".cmake", ".txt", ".py"}
     return [file for folder in folders for file in sorted((ROOT / folder).rglob("*"))
@@ -66,7 +65,7 @@ def sources():
 
 
 def split(text, wanted="sh"):
-    """([(line, block)] of the page's blocks in a language, [line] of commands that stand outside of blocks)."""
+    """Returns ([(line, block)] of the blocks in a language, [line] of commands outside of blocks)."""
     blocks, stray = [], []
     language = None
     for number, line in enumerate(text.splitlines(), 1):
@@ -90,13 +89,13 @@ def put_script(file, text):
 
 
 def furnish(folder, build, text):
-    """Puts into the folder what a page's commands find: the program, `./dev`, launchers, built programs, stand-ins.
+    """Puts into the folder what a page's commands need: the program, `./dev`, launchers, built programs, stand-ins.
     Returns the folder of the launchers, for PATH."""
     tools = folder / ".tools"
     tools.mkdir()
     program = build / "apps" / "rastrum" / "rastrum"
     (tools / "quit.json").write_text('{"events": [{"time": 0.1, "quit": true}]}', encoding="utf-8")
-    # A window that nobody sees, and that closes by itself; or none, where none was built in.
+    # A window that is invisible and closes by itself. Without window support there is none.
     put_script(tools / "rastrum", f"""
 [[ "$1" == view ]] || exec {program} "$@"
 script=(--script {tools}/quit.json)
@@ -116,7 +115,7 @@ for ((i = ${array%-*}; i <= ${array#*-}; ++i)); do
   SLURM_ARRAY_TASK_ID=$i SLURM_CPUS_PER_TASK=2 bash -eu "$1"
 done
 """)
-    # The real `./dev` would build. This one runs the same demo; of other commands it checks that they exist.
+    # The real `./dev` would build. This one runs the same demo. For other commands it checks that they exist.
     put_script(folder / "dev", f"""set -e
 program=rastrum
 case "$1" in
@@ -133,9 +132,9 @@ esac
 
 
 def run(folder, tools, block):
-    """Runs the block; returns what is wrong, or ''."""
+    """Runs the block. Returns what is wrong, or ''."""
     place = 'trap \'echo "failed: $BASH_COMMAND" >&2\' ERR\n'
-    # Ranks that wait leave their core to the ranks that compute.
+    # Waiting ranks yield their core to ranks that compute.
     environment = dict(os.environ, PATH=f"{tools}:{os.environ['PATH']}", OMPI_MCA_mpi_yield_when_idle="1")
     try:
         done = subprocess.run(["bash", "-eEuo", "pipefail", "-c", place + block], cwd=folder,
@@ -147,7 +146,7 @@ def run(folder, tools, block):
 
 
 def difference(build, drawn, shown):
-    """The largest difference of a channel; None where they cannot be compared."""
+    """Returns the largest difference of a channel, or None if the pictures cannot be compared."""
     if drawn.read_bytes() == shown.read_bytes():
         return 0
     tool = build / "tests" / "docs" / "picture_difference"
@@ -180,7 +179,7 @@ def check_pictures(folder, build, page, text, accept):
 
 
 def check(page, build, accept):
-    """A list of messages: what is wrong with a page."""
+    """Returns a list of messages: what is wrong with a page."""
     text = (ROOT / page).read_text(encoding="utf-8")
     blocks, stray = split(text)
     wrong = [f"{page}:{line}: a command outside of a ```sh block is never run" for line in stray]
@@ -194,12 +193,12 @@ def check(page, build, accept):
 
 
 def prose(page):
-    """The text without what stands in ``` blocks."""
+    """Returns the text without ``` blocks."""
     return re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE | re.DOTALL)
 
 
 def anchors(page):
-    """The anchors that GitHub makes of a page's headings."""
+    """Returns the anchors that GitHub makes of a page's headings."""
     return {re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-")
             for heading in HEADING.findall(prose(page))}
 
@@ -226,7 +225,7 @@ def check_links():
 
 
 def cpp_source():
-    """One source of the C++ blocks of all pages, whose lines are named as the pages'."""
+    """Returns one source of the C++ blocks of all pages, with line markers that name the pages' lines."""
     source = ['#include "pages.hpp"']
     for page in pages():
         for line, block in split((ROOT / page).read_text(encoding="utf-8"), "cpp")[0]:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The files that the commands of the documentation speak of, and that nobody has: small stand-ins
-under the same names. docs.py puts them beside a page's commands where they are named."""
+"""Small stand-ins for the files that the documentation's commands name. docs.py puts them beside a page's
+commands."""
 import base64
 import json
 import math
@@ -9,7 +9,7 @@ import zlib
 
 
 def ball(n=24):
-    """A bumpy ball: (positions, triangles), counter-clockwise."""
+    """Returns a bumpy ball: (positions, triangles), counter-clockwise."""
     positions = []
     for j in range(n + 1):
         for i in range(2 * n):
@@ -54,7 +54,7 @@ def gltf_parts():
             b"".join(struct.pack("<3I", *t) for t in triangles))
     vertices = 12 * len(positions)
     axes = list(zip(*positions))
-    # Two of them, of two colours, one of which may be seen through.
+    # Two balls of two colours, one of them translucent.
     document = {
         "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1]}],
         "nodes": [{"mesh": 0}, {"mesh": 1, "translation": [1.5, 0, 0.5]}],
@@ -91,7 +91,7 @@ def glb():
 
 
 def height(x, y):
-    """Hills, from 0 to 1."""
+    """Returns the height of hills, from 0 to 1."""
     h = math.sin(x / 9) * math.cos(y / 11) + 0.5 * math.sin(x / 4 + y / 7) + 0.2 * math.sin(y / 2)
     return (h + 1.7) / 3.4
 
@@ -107,13 +107,13 @@ def png(width, rows, bits, kind):
 
 
 def heights(n=128):
-    """16 bits, the lower half of their range."""
+    """Returns heights as a PNG of 16 bits, in the lower half of their range."""
     return png(n, [b"".join(struct.pack(">H", int(32000 * height(x, y))) for x in range(n))
                    for y in range(n)], 16, 0)
 
 
 def colors(n=256):
-    """Finer than the heights."""
+    """Returns colours as a PNG, finer than the heights."""
     def texel(x, y):
         h = height(x / 2, y / 2)
         return bytes((int(90 + 140 * h), int(110 + 90 * h), int(60 + 150 * h * h)))
@@ -121,7 +121,7 @@ def colors(n=256):
 
 
 def npy(n=96):
-    """Metres, float32."""
+    """Returns heights in metres as a float32 array file."""
     header = "{'descr': '<f4', 'fortran_order': False, 'shape': (%d, %d), }" % (n, n)
     header += " " * (-(len(header) + 11) % 64) + "\n"
     return (b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header.encode() +
@@ -136,7 +136,7 @@ FILES = {
 
 
 def put(folder, commands):
-    """Writes those of the files that the commands speak of."""
+    """Writes the files that the commands name."""
     for name, make in FILES.items():
         if name in commands:
             (folder / name).write_bytes(make())

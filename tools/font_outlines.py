@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes the outlines of a TrueType font as the table rastrum/overlay/font/outlines.inc.
 
-usage: font_outlines.py FONT.ttf OUT.inc      (needs fontTools; nothing of the build runs this)
+usage: font_outlines.py FONT.ttf OUT.inc      (needs fontTools; no build runs this)
 
-The table has each glyph's advance and the points of each contour, in the font's own units; a point's x
-is stored as x · 2, plus 1 where the point lies on the curve. Made from DejaVu Sans 2.37 as Debian's
-fonts-dejavu-core 2.37-6 has it; its licence lies beside the table.
+The table has each glyph's advance and the points of each contour, in the font's units. A point's x is stored as x · 2,
+plus 1 if the point lies on the curve. The font is DejaVu Sans 2.37 of Debian's fonts-dejavu-core 2.37-6; its licence is
+beside the table.
 """
 import sys
 

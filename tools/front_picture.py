@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws the picture of six at the top of README.md. All that it shows is made here, so it needs the package alone.
+"""Draws the six pictures at the top of README.md. It generates all that they show, so it needs only the package.
 
     python3 tools/front_picture.py [-o docs/images/front.png]
 """
@@ -14,7 +14,7 @@ LOOK = dict(size=SIZE, background="white", lights="studio", samples=8)
 
 
 def extruded(inner, outer, thickness, steps=1440):
-    """The solid between two outlines, radii over the angle, as (vertices, faces)."""
+    """Returns the solid between two outlines, radii over the angle, as (vertices, faces)."""
     angle = np.arange(steps) * (2 * np.pi / steps)
     radius = np.stack([outer(angle), outer(angle), inner(angle), inner(angle)], 1)
     z = np.broadcast_to(np.array([-1, 1, -1, 1]) * thickness / 2, radius.shape)
@@ -60,7 +60,7 @@ def assembly():
 
 
 def molecule():
-    """A double helix: backbones as tubes, atoms as spheres, pairs as cylinders; none of them is a mesh."""
+    """A double helix: backbones as tubes, atoms as spheres, pairs as cylinders, without a mesh."""
     t = np.linspace(0, 5.2 * np.pi, 520)
     strands = [np.stack([2.1 * np.cos(t + p), t * 0.72, 2.1 * np.sin(t + p)], 1) for p in (0, 2.5)]
     backbone = rr.Tubes(np.concatenate(strands), [0, 520, 1040], 0.30, color="#6f8fb5")
@@ -81,7 +81,7 @@ def molecule():
 
 
 def scalars():
-    """A plate that swings, coloured by how far."""
+    """A swinging plate, coloured by its displacement."""
     x, y = np.meshgrid(np.linspace(0, 3, 241), np.linspace(0, 2, 161))
     w = np.sin(np.pi * x) * np.sin(np.pi * y)
     v = np.stack([x, y, 0.24 * w], -1).reshape(-1, 3)
@@ -94,7 +94,7 @@ def scalars():
 
 
 def terrain():
-    """A height map without a triangle, in the evening sun."""
+    """A height map in the evening sun, without triangles."""
     n = 1024
     u = np.fft.fftfreq(n)
     k = np.hypot(u[:, None], u[None, :])
@@ -111,7 +111,7 @@ def terrain():
 
 
 def depth_and_masks():
-    """One frame gives the picture, the depth and the masks of its things."""
+    """One frame's picture, depth and masks."""
     rng = np.random.default_rng(5)
     wheel = extruded(circle(0.35), gear(32), 0.35, 720)
     t = np.linspace(0, 2 * np.pi, 400)
@@ -146,7 +146,7 @@ def million():
 
 
 def front_picture():
-    """The six, three a row."""
+    """Returns the six pictures, three in a row."""
     pictures = [assembly(), molecule(), scalars(), terrain(), depth_and_masks(), million()]
     width, height = SIZE
     sheet = rr.render([], rr.Camera.look_at((0, 0, 1)), size=(3 * width, 2 * height), background="white")

@@ -1,14 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Golden pictures that failed: lists them, writes a page that flickers them, accepts the new ones.
+"""Lists golden pictures that failed, writes a page that flickers them, or accepts the new ones.
 
 usage: golden.py [accept [NAME...]]
 
-A golden test compares its picture with tests/golden/NAME.png. When they differ it writes
-NAME.expected.png, NAME.actual.png and NAME.diff.png into golden-failures/ of its build folder
-(a picture that is not there yet has no expected one). `accept` copies the actual pictures to
-tests/golden/ and removes the failure. A picture that nobody has to look at is kept as its digest, a
-line in tests/golden/hashes.txt: its test writes NAME.actual.sha256, which `accept` takes as well.
+A golden test compares its picture with tests/golden/NAME.png. If they differ it writes NAME.expected.png,
+NAME.actual.png and NAME.diff.png into golden-failures/ of its build folder (without the first if there is no golden
+yet). `accept` copies the actual pictures to tests/golden/ and removes the failures. A picture that need not be looked at
+is kept as a digest, a line of tests/golden/hashes.txt; its test writes NAME.actual.sha256, which `accept` takes too.
 """
 import html
 import pathlib
@@ -34,7 +33,7 @@ img { image-rendering: pixelated; max-width: 45vw; min-width: 256px }
 
 
 def failures():
-    """(build folder's name, golden name, {kind: file}) of every failure, in order."""
+    """Returns (build folder's name, golden name, {kind: file}) of every failure, in order."""
     found = {}
     for folder in sorted((ROOT / "build").glob("*/golden-failures")):
         for file in sorted([*folder.rglob("*.png"), *folder.rglob("*.sha256")]):

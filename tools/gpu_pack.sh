@@ -1,8 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# gpu_pack.sh BUILD TO: the programs of a build with CUDA, and the shared libraries that they need,
-# into the folder TO, to be carried to a machine with a GPU and run there by gpu_part.sh. Fails where
-# it is more than 64 MiB.
+# gpu_pack.sh BUILD TO: copies the programs of a build with CUDA and their shared libraries into the
+# folder TO, for gpu_part.sh on a machine with a GPU. Fails above 64 MiB.
 set -euo pipefail
 
 (($# == 2)) || { echo "usage: gpu_pack.sh BUILD TO" >&2; exit 2; }
@@ -27,7 +26,7 @@ cp "${programs[@]}" "$to/bin"
 cp "$module" "$to/lib"
 strip "$to"/bin/* "$to"/lib/*
 
-# Not the C library: it is of one piece with the loader, which each machine has of its own.
+# Without the C library, which must fit the loader of each machine.
 needed="$(ldd "${programs[@]}" "$module")"
 if grep -F 'not found' <<<"$needed" >&2; then
   echo "gpu_pack.sh: these libraries are missing here" >&2

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# One part of what only a GPU can show, by the programs that `./dev gpu --pack` put beside this script,
-# on a machine that has a driver and nothing else. Each part ends within RASTRUM_PART_S seconds (570).
+# Runs one part of the checks that need a GPU, with the programs that `./dev gpu --pack` put beside
+# this script. The machine needs only a driver. Each part ends within RASTRUM_PART_S seconds (570).
 #
-#   gpu_part.sh            list the parts, in the order in which they tell most
+#   gpu_part.sh            list the parts, the most telling first
 #   gpu_part.sh PART OUT   run one; its log and what it writes go to the folder OUT
-#   gpu_part.sh all OUT    run all in that order, within RASTRUM_ALL_S seconds (1800) together; what fails
-#                          stops no other, and what has no time left fails
+#   gpu_part.sh all OUT    run all in that order, within RASTRUM_ALL_S seconds (1800) together; a failure
+#                          stops no other part, and a part without time left fails
 set -euo pipefail
 
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
@@ -18,7 +18,7 @@ readonly parts=(words rasterizer terrain bench memcheck racecheck synccheck init
 
 limited() { timeout --kill-after=10 "$limit" "$@"; }
 
-# Under one limit for all programs: what is left of it is the next one's.
+# All programs share one limit: each one gets the rest of it.
 sanitize() {
   local tool="$1" exit_code="$2" binary filter end=$((SECONDS + limit)) left status=0
   if ! command -v compute-sanitizer >/dev/null; then
@@ -36,13 +36,14 @@ sanitize() {
 
 run_part() {
   case "$1" in
-    # All scenes of layers in every budget, down to a turn a block, would take the part's time.
+    # All scenes of layers in every budget, down to a turn a block, would take the part's whole
+    # time.
     words) RASTRUM_TEST_SHARE="${RASTRUM_TEST_SHARE:-10}" limited "$here/bin/cuda_device_test" </dev/null ;;
     rasterizer) limited "$here/bin/cuda_rasterizer_on_device" </dev/null ;;
     terrain) limited "$here/bin/cuda_terrain_on_device" </dev/null ;;
     bench) limited "$here/bin/rastrum" bench cuda --quick --out "$out" </dev/null ;;
     memcheck | racecheck | synccheck) sanitize "$1" 1 ;;
-    # Padding and CUB's own tiles are known false alarms: its reports are to be read.
+    # Padding and CUB's own tiles are known false alarms, so its reports need a reader.
     initcheck) sanitize "$1" 0 ;;
     *) echo "gpu_part.sh: no part $1; there are ${parts[*]}" >&2; return 2 ;;
   esac
@@ -85,7 +86,7 @@ status=0
 } >"$log" 2>&1
 run_part "$1" > >(tee -a "$log") 2>&1 || status=$?
 wait  # for the log
-# A test that finds no device is skipped, which here is a failure.
+# A test that finds no device is skipped. Here that is a failure.
 if ((status == 0)) && grep -q 'no device: ' "$log"; then
   echo "ERROR: tests found no device that they could use" | tee -a "$log"
   status=1

@@ -1,18 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Compares what each kernel of ours takes of a GPU with what it took when that was last recorded.
+"""Compares the GPU resources of each of our kernels with the recorded ones.
 
 usage: kernel_budget.py check|record [all] ROOT
 
-Compiles every .cu file to PTX, and those of the library of device code from there for the H100
-(sm_90): a minute or more a file, and needs nvcc, not a GPU. A file whose text and headers are those
-of the record, comments left out, is not compiled again unless `all` says so; nor is what was
-compiled before, whose results stay in build/budget. RASTRUM_JOBS files are compiled at once.
+Compiles every .cu file to PTX, and the files of the library of device code on to machine code of the H100 (sm_90). This
+takes a minute or more a file and needs nvcc, not a GPU. A file whose text and headers equal the record's, without
+comments, is only compiled if `all` is given. Results are cached in build/budget. RASTRUM_JOBS files are compiled at
+once.
 
-`record` writes tests/cuda/kernels.txt: registers, bytes of stack, of spills, of code a kernel.
-`check` fails, and names the kernel, where one takes more registers or stack, spills more, has a
-tenth more code than that, or is new. Both print all that differs, and both fail where PTX has an
-instruction of floats that may round in more than one way: fma, mad, .approx, .ftz.
+`record` writes tests/cuda/kernels.txt: for each kernel registers, bytes of stack, of spills and of code. `check` fails,
+and names the kernel, if one is new, needs more registers or stack, spills more, or has a tenth more code. Both print
+all differences. Both fail if PTX has a float instruction whose rounding is not fixed: fma, mad, .approx, .ftz.
 """
 import concurrent.futures
 import hashlib
@@ -28,11 +27,12 @@ import cuda_sources
 
 RECORD = pathlib.Path("tests/cuda/kernels.txt")
 CACHE = pathlib.Path("build/budget")
-FORMAT = "1"  # another one where `compiled` changes, so that nothing of before is taken for its result
-LIBRARIES = ("rastrum", "papers")  # folders whose kernels are counted; the others are of tests and benchmarks
+FORMAT = "1"  # changes with `compiled`, so that older results are not used
+LIBRARIES = ("rastrum", "papers")  # folders whose kernels are counted; other kernels belong to tests and
+                                   # benchmarks
 FLAGS = re.compile(r"set\(cuda_flags\s+([^)]*)\)")
 FIGURES = ("registers", "bytes of stack", "bytes of spills", "bytes of code")
-# An instruction of PTX with its types, behind a predicate where it has one: not a name or directive.
+# A PTX instruction with its types, after an optional predicate. It is not a name or a directive.
 INSTRUCTION = re.compile(r"^\s*(?:@!?%\w+\s+)?([a-z]\w*(?:\.\w+)+)\s", re.MULTILINE)
 OURS = re.compile(r"\bcuda_system::(?:on_gpu::)?(\w+_kernel)<")
 ENTRY = re.compile(r"Compiling entry function '(\w+)'")
@@ -48,15 +48,15 @@ def run(command):
 
 
 def rounds_freely(instruction):
-    """Whether the processor may round it as it likes: one rounding for two, an estimate, or no
-    denormals. Integers' mad is exact, and so is what is named .rn otherwise."""
+    """Returns whether the processor may round it in more than one way: a fused operation, an estimate, or flushed
+    denormals. Integers' mad is exact, and so are other instructions with .rn."""
     name, *parts = instruction.split(".")
     floats = any(re.fullmatch(r"f(16|32|64)(x2)?|bf16(x2)?", part) for part in parts)
     return (name in ("fma", "mad") and floats) or "approx" in parts or "ftz" in parts
 
 
 def instructions_of(ptx):
-    """How many instructions of floats there are, and those that round freely, with how often."""
+    """Returns the number of float instructions, and those with free rounding with their numbers."""
     floats, free = 0, {}
     for instruction in INSTRUCTION.findall(ptx):
         floats += bool(re.search(r"\.f(32|64)\b", instruction))
@@ -66,10 +66,10 @@ def instructions_of(ptx):
 
 
 def short(name):
-    """Without what every kernel's name has; types of the project alone."""
+    """Shortens a kernel's name: drops what all names have, and other than the project's types."""
     name = re.sub(r"\(anonymous namespace\)::|<unnamed>::", "", name)
     name = re.sub(r"\b(?:rastrum|parallel|raster|terrain|family|transparency|cuda_detail|cuda_system|on_gpu)::", "", name)
-    name = re.sub(r"^void\s+|, 18446744073709551615ul(?=>)", "", name)  # the latter of every span
+    name = re.sub(r"^void\s+|, 18446744073709551615ul(?=>)", "", name)  # the latter is in every span
     depth = 0
     for at, letter in enumerate(name):  # the parameters, which repeat the template's arguments
         depth += {"<": 1, ">": -1}.get(letter, 0)
@@ -80,7 +80,7 @@ def short(name):
 
 
 def code_bytes(cubin):
-    """{mangled name: bytes of machine code}."""
+    """Returns {mangled name: bytes of machine code}."""
     sizes = {}
     for line in run(["readelf", "-S", "-W", cubin]).splitlines():
         words = line.replace("[ ", "[").split()
@@ -90,7 +90,7 @@ def code_bytes(cubin):
 
 
 def kernels_of(log, sizes):
-    """{short name: figures} of our kernels in ptxas's log; several of one name have the largest."""
+    """Returns {short name: figures} of our kernels in ptxas's log. Equal names have the largest figures."""
     found, entry, stack = {}, "", (0, 0)
     for line in log.splitlines():
         if match := ENTRY.search(line):
@@ -109,7 +109,7 @@ def kernels_of(log, sizes):
 
 
 def compiled(root, source, flags):
-    """The figures of one source, compiled now."""
+    """Compiles a source and returns its figures."""
     with tempfile.TemporaryDirectory() as folder:
         ptx, cubin = pathlib.Path(folder) / "k.ptx", pathlib.Path(folder) / "k.cubin"
         run(["nvcc", "-ptx", "-arch=compute_90", *flags, "-I", root, "-I", root / "include", "-I", root / "papers/include", source, "-o", ptx])
@@ -133,7 +133,7 @@ def of_source(root, source, flags, digest):
 
 
 class Record:
-    """tests/cuda/kernels.txt: a digest a source, figures a kernel, by 'source: kernel'."""
+    """tests/cuda/kernels.txt: a digest per source, and figures per 'source: kernel'."""
 
     def __init__(self, file):
         self.digests, self.kernels = {}, {}
@@ -156,7 +156,7 @@ class Record:
 
 
 def differences(before, now):
-    """(what is worse, what is better or gone), a line each."""
+    """Returns (lines of what is worse, lines of what is better or gone)."""
     worse, other = [], []
     for name, figures in sorted(now.items()):
         known = before.get(name)

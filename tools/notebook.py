@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the cells of a notebook in this process, one after the other, without Jupyter.
 
-usage: notebook.py run FILE    and stores what they say and show in it
-       notebook.py check FILE  exits with 1 where that is not what the file holds
+usage: notebook.py run FILE    stores their output in FILE
+       notebook.py check FILE  exits with 1 if their output differs from FILE's
 
-A check lets numbers and digests differ, and one pixel in 200: cells take sines from NumPy, whose last bits depend on
-the processor. The value of a cell's last line is shown: as PNG, where it has one (_repr_png_), else as text. Needs
+`check` allows other numbers and digests, and one differing pixel in 200: cells use sines from NumPy, whose last bits
+depend on the processor. The value of a cell's last line is shown as PNG if it has one (_repr_png_), else as text. Needs
 Pillow.
 """
 import ast
@@ -20,7 +20,7 @@ import sys
 
 
 def run_cell(source, names):
-    """(text that was printed, what the last line is worth), by statements as Jupyter has it."""
+    """Runs a cell by statements, as Jupyter does. Returns (printed text, value of the last line)."""
     tree = ast.parse(source)
     last = tree.body.pop() if tree.body and isinstance(tree.body[-1], ast.Expr) else None
     said = io.StringIO()

@@ -1,15 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws the showcase: what a first picture of real and procedural data looks like, beside what f3d and
-VTK make of the same files by default.
+"""Draws the showcase: first pictures of real and procedural data, beside those of f3d and VTK by default.
 
 usage: showcase.py [--build DIR] [--data DIR] [--out DIR] [--no-peers] [--new-peers] [--only NAME]
 
-Writes DIR/index.html and DIR/showcase.md: thumbnails that lead to the pictures, the command under each,
-and, where f3d and VTK are installed (Debian: f3d, python3-vtk9, xvfb), their pictures of the same file. DATA is
-../shared/data; entries whose file is not there are left out, and named. Peers' pictures are made here and
-nowhere kept but in DIR, where they are taken again unless --new-peers is said. Scientific files become PLY files
-with numbers by tools/showcase_data.py, which needs VTK's Python package as well.
+Writes DIR/index.html and DIR/showcase.md: thumbnails that link to the pictures, each with its command, and, if f3d and
+VTK are installed (Debian: f3d, python3-vtk9, xvfb), their pictures of the same file. DATA is ../shared/data; entries
+without their file are left out, with a message. Peers' pictures are kept only in DIR and used again unless --new-peers
+is given. tools/showcase_data.py, which also needs VTK's Python package, converts scientific files to PLY files with
+numbers.
 """
 import argparse
 import dataclasses
@@ -68,7 +67,7 @@ class Picture:
 
 
 def run(command, **more):
-    """(seconds, what it said where it failed)"""
+    """Runs a command. Returns (seconds, its output if it failed)."""
     begin = time.monotonic()
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=TIMEOUT_S, **more)
@@ -102,7 +101,7 @@ class Maker:
         return peers
 
     def make_data(self):
-        """PLY files of the scientific ones."""
+        """Makes the PLY files of the scientific data."""
         _, wrong = run([PYTHON, ROOT / "tools" / "showcase_data.py", self.data, self.made])
         if wrong:
             print(f"note: showcase_data.py: {wrong.splitlines()[-1]}", file=sys.stderr)

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes of the scientific files of ../shared/data what tools/showcase.py draws: PLY files with numbers.
+"""Converts the scientific files of ../shared/data for tools/showcase.py: to PLY files with numbers.
 
 usage: showcase_data.py DATA OUT
 
-Molecules are read here; the files of VTK need its Python package (Debian: python3-vtk9) and are left out
-without. Prints the names of the files that it wrote.
+Molecules are read here. VTK's files need its Python package (Debian: python3-vtk9), else they are left out. Prints the
+names of the written files.
 """
 import array
 import math
@@ -16,7 +16,7 @@ ELEMENTS = {"H": 1, "C": 6, "N": 7, "O": 8, "P": 15, "S": 16}
 
 
 def write_ply(file, points, scalars, triangles=(), face_scalars=()):
-    """`points`, `triangles`: three numbers each. `scalars`, `face_scalars`: (name, type of PLY's, values)."""
+    """`points`, `triangles`: three numbers each. `scalars`, `face_scalars`: (name, PLY type, values)."""
     kinds = {"float": "f", "double": "d", "uchar": "B", "int": "i"}
     lines = ["ply", "format binary_little_endian 1.0", f"element vertex {len(points)}"]
     lines += [f"property float {axis}" for axis in "xyz"] + [f"property {kind} {name}" for name, kind, _ in scalars]
@@ -36,7 +36,7 @@ def write_ply(file, points, scalars, triangles=(), face_scalars=()):
 
 
 def molecule(pdb, file):
-    """The first model's atoms, with their element, chain and temperature factor."""
+    """Writes the first model's atoms with their element, chain and temperature factor."""
     points, element, chain, factor = [], [], [], []
     for line in pdb.read_text(encoding="ascii", errors="replace").splitlines():
         if line.startswith("ENDMDL"):
@@ -51,7 +51,7 @@ def molecule(pdb, file):
 
 
 def balls(file):
-    """Two rows of three balls, metal above and varnished below, rougher to the right: OBJ and MTL."""
+    """Writes two rows of three balls as OBJ and MTL: metal above, varnished below, rougher to the right."""
     materials, lines, rows, columns = [], [f"mtllib {file.stem}.mtl"], 48, 96
     for k in range(6):
         metal, rough = k < 3, k % 3 * 0.3 + 0.06
@@ -89,7 +89,7 @@ class OfVtk:
         return step.GetOutput()
 
     def write(self, name, mesh, point_arrays, face_arrays=()):
-        """Arrays: (name there, name in the file, type); of vectors the length."""
+        """Arrays: (VTK's name, the file's name, type); a vector's length is written."""
         mesh = self.then(self.vtk.vtkTriangleFilter(), mesh, PassVertsOff=(), PassLinesOff=())
 
         def values(arrays, of, count):
@@ -113,7 +113,7 @@ class OfVtk:
         surface = self.then(vtk.vtkDataSetSurfaceFilter(), grid, SetNonlinearSubdivisionLevel=(1,))
         self.write("notch.ply", surface, [("Nodal Stress-normed", "stress", "double")])
         grid = self.read(vtk.vtkXMLUnstructuredGridReader(), "can.vtu")
-        # As the file has it: the mesh before it moved, with how far and fast it does.
+        # As in the file: the mesh before it moved, with its displacement and speed.
         self.write("can.ply", self.then(vtk.vtkDataSetSurfaceFilter(), grid), [("DISPL", "displacement", "double"), ("VEL", "speed", "float")],
                    [("EQPS", "strain", "float")])
         disk = self.read(vtk.vtkXMLPolyDataReader(), "disk_out_ref_surface.vtp")

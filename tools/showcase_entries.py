@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The entries that tools/showcase.py draws: title, options of `rastrum`, and the file that f3d and VTK draw, too."""
+"""The entries of tools/showcase.py: title, options of `rastrum`, and the file that f3d and VTK also draw."""
 import dataclasses
 
 
@@ -7,13 +7,13 @@ import dataclasses
 class Entry:
     name: str
     title: str
-    command: str  # DATA stands for the folder of real data, MADE for what showcase_data.py makes of it
-    peer_file: str = ""  # of these folders, for f3d and VTK; as in the command
+    command: str  # DATA is the folder of real data, MADE that of showcase_data.py's files
+    peer_file: str = ""  # for f3d and VTK; with DATA or MADE as in the command
     size: tuple = (640, 480)
 
     @property
     def files(self):
-        """The files of the command, each with its folder."""
+        """Returns the files of the command, each with its folder."""
         words = [w.strip("'") for w in self.command.replace("@", " ").replace(":", " ").split()]
         return [w for w in words if w.startswith(("DATA/", "MADE/"))]
 
@@ -21,10 +21,10 @@ class Entry:
 SIZE = "--size 640x480"
 PAGE = f"{SIZE} --background '#ffffff'"
 NIGHT = f"{SIZE} --background '#20242c'"
-# Where one says more than the picture, four samples are said, too.
+# Used where the options say more than the file.
 SMOOTH = "--samples 4"
 
-FIRST = [  # as they come: a file, and nothing about how
+FIRST = [  # a file without further options
     Entry("bunny", "The bunny", f"render DATA/small/stanford-bunny.obj {PAGE}", "DATA/small/stanford-bunny.obj"),
     Entry("dragon", "A dragon", f"render DATA/big/dragon_348k.ply {PAGE}", "DATA/big/dragon_348k.ply"),
     Entry("brain", "A million triangles of a brain", f"render DATA/big/brain_iso126_1033k.ply {PAGE}",

@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes what Sphinx builds the site of, and checks the site; `./dev site` runs these in turn.
+"""Makes the sources of the site for Sphinx, and checks the built site; `./dev site` runs these in turn.
 
-usage: site.py source FOLDER   the pages, a page for each public header and each module, the files that pages link
-       site.py check FOLDER    a built site's links and anchors; nothing of it comes from elsewhere
+usage: site.py source FOLDER   the pages, a page for each public header, module and linked file
+       site.py check FOLDER    a built site's links and anchors; nothing may load from elsewhere
        site.py navigation      each page and each public header has its place in docs/site/*.md
 
-The pages stay where they are in the repository. In the site, README.md is the first page, those of docs/ lie beside
-it, and a folder's README.md is its index. The pages of docs/site/ arrange them. A link to a file that is no page
-leads to a page that shows this file, or, for a public header, to its page of the interface. `source` needs what
-docs/site/requirements.txt names, and Doxygen's XML for Sphinx to read; the others need nothing but Python.
+The pages stay in place in the repository. In the site, README.md is the first page with the pages of docs/ beside it,
+and a folder's README.md is its index. docs/site/ arranges the pages. A link to another file leads to a page that shows
+it, and a link to a public header to its interface page. `source` needs docs/site/requirements.txt and Doxygen's XML;
+the others need only Python.
 """
 import os
 import pathlib
@@ -27,7 +27,7 @@ LEFT_OUT = {
     "docs/decisions/0000-template.md",
     "python/README.md",  # PyPI's page of the package, which repeats the guide
 }
-# Pages whose folder belongs to them, so that no page of docs/site/ need name what is in it.
+# Pages that list their folder, so that docs/site/ need not name its pages.
 INSIDE = {"decisions/index": "[0-9]*", "log/index": "*", "papers/index": "*/index"}
 TOCTREE = re.compile(r"^```\{toctree\}\n(.*?)^```", re.MULTILINE | re.DOTALL)
 CODE = re.compile(r"^(```+).*?^\1|`[^`\n]+`", re.MULTILINE | re.DOTALL)
@@ -37,7 +37,7 @@ LANGUAGES = {".cpp": "cpp", ".hpp": "cpp", ".c": "c", ".h": "c", ".f90": "fortra
 
 
 def docname(path):
-    """The name in the site, without ending, of a page that has this path in the repository."""
+    """Returns the name in the site, without ending, of a page with this path in the repository."""
     if path == "README.md":
         return "index"
     if path.startswith(f"{SITE}/"):
@@ -47,23 +47,23 @@ def docname(path):
 
 
 def pages():
-    """{path in the repository: name in the site}"""
+    """Returns {path in the repository: name in the site}."""
     return {path: docname(path) for path in docs.all_pages() if not path.startswith(SITE) and path not in LEFT_OUT}
 
 
 def arranging_pages():
-    """The same of docs/site/*.md, which are no pages of the repository; a folder's README.md goes before them."""
+    """The same for docs/site/*.md, which are only in the site. A folder's README.md takes precedence over them."""
     paths = [file.relative_to(ROOT).as_posix() for file in sorted((ROOT / SITE).glob("*.md")) if file.name != "index.md"]
     return {path: name for path in paths if (name := docname(path)) not in pages().values()}
 
 
 def header_name(path):
-    """The name in the site of a public header's page."""
+    """Returns the name in the site of a public header's page."""
     return "cpp_api/" + pathlib.PurePath(path).name.removesuffix(".hpp").replace(".", "_")
 
 
 def headers():
-    """{path: name in the site} of the public headers."""
+    """Returns {path: name in the site} of the public headers."""
     files = [ROOT / "include" / "rastrum.h", *sorted((ROOT / "include" / "rastrum").glob("*.hpp"))]
     return {file.relative_to(ROOT).as_posix(): header_name(file.name) for file in files}
 
@@ -74,7 +74,7 @@ class Source:
     def __init__(self, folder):
         self.folder = folder
         self.names = {**pages(), **arranging_pages(), **headers(), "docs/decisions": "decisions/index"}
-        self.files = set()  # linked ones that are no pages
+        self.files = set()  # linked files that are not pages
 
     def write(self, name, text):
         file = self.folder / name
@@ -82,7 +82,7 @@ class Source:
         file.write_text(text, encoding="utf-8")
 
     def target(self, path):
-        """What a link to this path of the repository leads to, from the top of the site."""
+        """Returns where a link to this path of the repository leads, from the top of the site."""
         if path in self.names:
             return f"/{self.names[path]}.md"
         if path.endswith((".png", ".svg", ".jpg", ".ipynb")):
@@ -94,7 +94,7 @@ class Source:
         return f"/files/{path}.md"
 
     def linked(self, page, text):
-        """The text with its links turned to what they lead to in the site."""
+        """Returns the text with its links turned into the site's."""
         def turned(match):
             to, anchor, rest = match.groups()
             if not to or "://" in to or to.startswith("mailto:"):
@@ -102,7 +102,7 @@ class Source:
             path = os.path.normpath(ROOT / page / ".." / to)
             return f"]({self.target(os.path.relpath(path, ROOT))}{anchor or ''}{rest})"
 
-        # Code stays as it is: what looks like a link in it is none.
+        # Code has no links, whatever it looks like.
         hidden = CODE.sub(lambda code: code.group().replace("](", "\0"), text)
         return LINK.sub(turned, hidden).replace("\0", "](")
 
@@ -123,7 +123,7 @@ class Source:
             self.write(f"{name}.md", f"# {shown}\n\n{with_pages_linked(about)}")
 
     def write_files(self):
-        """Pages of the files that pages link, and of folders, with all that lies in them."""
+        """Writes pages of linked files, and of linked folders with all their files."""
         waiting, seen = list(self.files), set()
         while waiting:
             path = waiting.pop()
@@ -143,20 +143,20 @@ class Source:
 
 
 def introduction(text):
-    """The comment at the top of a header, without marks. A line that begins with one word and a point is a paragraph."""
+    """Returns the comment at the top of a header, without marks. A line of one word and a full stop begins a paragraph."""
     comment = re.match(r"(?:// SPDX-.*\n)?((?://.*\n)*)", text).group(1)
     return re.sub(r"^(\w+\.) ", r"\n**\1** ", re.sub(r"^// ?", "", comment, flags=re.MULTILINE), flags=re.MULTILINE)
 
 
 def with_pages_linked(text):
-    """The text with links where it names pages, as comments do."""
+    """Returns the text with links for the pages that it names, as comments do."""
     known = pages()
     return re.sub(r"\bdocs/[\w/\\]+\.md\b", lambda named: f"[{named.group()}](/{known[path]}.md)" if (
         path := named.group().replace("\\", "")) in known else named.group(), text)
 
 
 def navigation():
-    """Yields what has no place in docs/site/*.md, or has a place and is not there."""
+    """Yields what lacks a place in docs/site/*.md, and places whose page is missing."""
     named = set()
     for path, name in {**arranging_pages(), f"{SITE}/index.md": "index"}.items():
         for block in TOCTREE.findall((ROOT / path).read_text(encoding="utf-8")):

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The pages of the C++ interface, one a public header, from Doxygen's XML: everything in the order of the header."""
+"""The pages of the C++ interface, one per public header, from Doxygen's XML, in the order of the header."""
 import re
 import xml.etree.ElementTree as ElementTree
 
-# Namespaces whose names users do not write.
+# Namespaces that users do not write.
 INTERNAL = re.compile(r"\b\w+_detail\b")
 SPECIAL = re.compile(r"([\\`*_\[\]<>|#~^$])")
 LONGEST_VALUE = 60
-# A comment that stands for itself and says what comes next.
+# A comment between blank lines, which describes what follows.
 REMARK = re.compile(r"(?<=\n\n)(?:// ?[^\n]*\n)+(?=\n)")
 
 
@@ -23,7 +23,7 @@ class Interface:
                        for inner in compound.iter("innerclass")}
 
     def page(self, path, text):
-        """Markdown of what the header declares."""
+        """Returns Markdown of the header's declarations."""
         domain = "c" if path.endswith(".h") else "cpp"
         entries = [(line_of(thing), entry) for thing in self.declared(path) if (entry := self.entry(thing, domain, 7))]
         entries += [(1 + text.count("\n", 0, remark.start()), remark_of(remark.group())) for remark in REMARK.finditer(text)]
@@ -31,8 +31,7 @@ class Interface:
         return scope + "".join(entry for _, entry in sorted(entries, key=lambda placed: placed[0]))
 
     def declared(self, path):
-        """The things at the outermost level of this file. A thing of a namespace is in the file's list and in the
-        namespace's."""
+        """Returns the outermost things of this file. Doxygen lists a thing of a namespace both by file and by namespace."""
         found = {}
         for compound in self.compounds.values():
             kind = compound.get("kind")
@@ -45,7 +44,7 @@ class Interface:
         return [thing for thing in found.values() if not INTERNAL.search(name_of(thing).rpartition("::")[0])]
 
     def entry(self, thing, domain, depth):
-        """A directive for the thing; "" for what users do not call."""
+        """Returns a directive for the thing, or "" if users do not call it."""
         kind, name = thing.get("kind"), name_of(thing)
         if thing.get("prot") == "private" or kind == "friend" or INTERNAL.search(name):
             return ""
@@ -88,7 +87,7 @@ def function(thing, domain, depth, about, short):
     if re.search(r"= ?delete$", arguments) or re.search(r"= ?default$", arguments) and not about:
         return ""
     requires = plain(thing.find("requiresclause"))
-    if requires.startswith("requires"):  # Sphinx does not read that
+    if requires.startswith("requires"):  # Sphinx cannot read that
         requires = ""
     template = template_of(thing) + (f"requires {requires} " if requires else "")
     declared = declaration(thing, short)
@@ -100,10 +99,10 @@ def function(thing, domain, depth, about, short):
 def alias(thing, domain, depth, about, short):
     definition = plain(thing.find("definition"))
     if domain == "c":
-        # `typedef struct X X` is a handle; others are what they say.
+        # `typedef struct X X` is a handle. Others show their type.
         return directive("c:type", short if definition.startswith("typedef struct") else definition.removeprefix("typedef "), about, depth)
     to = definition.partition("= ")[2].removeprefix("typedef ")
-    shown = f" = {to}" if to and "decltype" not in to else ""  # Sphinx does not read that
+    shown = f" = {to}" if to and "decltype" not in to else ""  # Sphinx cannot read that
     return directive("cpp:type", template_of(thing) + short + shown, about, depth)
 
 
@@ -144,14 +143,14 @@ def name_of(thing):
 
 
 def unqualified(thing):
-    """The name as a directive inside of its class has it; at the outermost level that from rastrum:: on."""
+    """Returns the name as a directive inside of its class has it; at the outermost level, the name after rastrum::."""
     name = name_of(thing)
     return name.rpartition("::")[2] if thing.get("id").startswith(("struct", "class")) and "operator" not in name else (
         thing.findtext("name") if thing.get("id").startswith(("struct", "class")) else name)
 
 
 def declaration(thing, short):
-    """What stands before the arguments, with the name as it is written."""
+    """Returns what precedes the arguments, with the name as written."""
     words = [word for word, attribute in (("static", "static"), ("virtual", "virt"), ("constexpr", "constexpr"))
              if thing.get(attribute) in ("yes", "virtual", "pure-virtual")]
     kind = re.sub(r"\b(?:static|virtual|constexpr|inline|friend)\b ?", "", plain(thing.find("type")))
@@ -170,12 +169,12 @@ def template_of(thing):
 
 
 def plain(element):
-    """The text of code."""
+    """Returns the text of code."""
     return "" if element is None else " ".join("".join(element.itertext()).split())
 
 
 def text_of(thing):
-    """What the comments say, as Markdown."""
+    """Returns the comments as Markdown."""
     paragraphs = [markdown(block) for part in ("briefdescription", "detaileddescription") if (found := thing.find(part)) is not None
                   for block in found]
     return "\n\n".join(paragraph for paragraph in paragraphs if paragraph)
@@ -188,7 +187,7 @@ def markdown(element):
         if child.tag == "computeroutput":
             made.append(f"`{inside}`")
         elif child.tag == "blockquote":
-            # Doxygen takes a line that begins with > for a quotation; here it is a comparison.
+            # Doxygen reads a line that begins with > as a quotation. Here it is a comparison.
             made.append("\\> " + "".join(markdown(block) for block in child))
         elif child.tag == "listitem":
             made.append("\n1. " + "".join(markdown(block) for block in child))
@@ -199,6 +198,6 @@ def markdown(element):
 
 
 def remark_of(comment):
-    """A heading of a few words, or a paragraph."""
+    """Returns a heading if the comment has few words, else a paragraph."""
     text = " ".join(line.lstrip("/ ") for line in comment.splitlines())
     return f"## {text.rstrip('.')}\n\n" if len(text) < 70 and text.count(". ") == 0 else f"{text}\n\n"

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Checks a built site: links lead to pages and anchors that are there, and nothing is loaded from elsewhere."""
+"""Checks a built site: links lead to existing pages and anchors, and nothing loads from elsewhere."""
 import html.parser
 import re
 import urllib.parse
 
-# What a browser loads to show a page; links that a reader follows are not among them.
+# What a browser loads to show a page; a reader's links are not among it.
 LOADS = {"script": "src", "img": "src", "link": "href", "source": "src", "iframe": "src", "video": "src"}
 URL = re.compile(r"url\(\s*['\"]?([^'\")]+)")
 

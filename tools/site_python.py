@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The pages of the Python interface, from the package's sources and stubs: nothing is imported or built."""
+"""The pages of the Python interface, from the package's sources and stubs. Nothing is imported or built."""
 import ast
 import re
 
 import griffe
 
-# "near, far: nothing is nearer" at the start of a sentence.
+# Parameters at the start of a sentence, such as "near, far: nothing is nearer".
 BEGINS = re.compile(r"(?:^|(?<=[.:]\s)|(?<=\n))(\w+(?:, \w+)*): (?=\S)")
 ENDS = re.compile(r"(?<=\.)\s(?=(?:Returns|Raises) )")
-# What **look takes.
+# The keywords that **look takes.
 LOOK = {"color", "material", "transform", "visible", "id", "winding", "clip_planes", "scalars", "cmap", "clim"}
 PLUGINS = {
     "pytest_plugin": "pytest",
@@ -18,7 +18,7 @@ PLUGINS = {
 
 
 def pages(folder):
-    """{name: Markdown} of the pages of the package in this folder."""
+    """Returns {name: Markdown} of the pages of the package in this folder."""
     package = griffe.load("rastrum", search_paths=[folder], try_relative_path=False, resolve_aliases=True)
     plugins = "".join(f"## {title}\n\n{source(package[name])[0]}\n\n" for name, title in PLUGINS.items())
     return {
@@ -29,7 +29,7 @@ def pages(folder):
 
 
 def source(module):
-    """(docstring with its indentation, names in __all__), neither of which stubs have."""
+    """Returns (docstring with its indentation, names in __all__), which stubs do not have."""
     tree = ast.parse(module.filepath.with_suffix(".py").read_text(encoding="utf-8"))
     public = [ast.literal_eval(node.value) for node in tree.body
               if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "__all__"]
@@ -61,7 +61,7 @@ def final(thing):
 
 
 def shared_bases(thing):
-    """Bases without a public name whose docstrings say what the classes share."""
+    """Returns the bases without a public name whose docstrings apply to their classes."""
     if not thing.is_class:
         return
     for base in thing.resolved_bases:
@@ -87,7 +87,7 @@ def entry(thing):
 
 
 def arguments(thing):
-    """Those of a class; of an error its bases, which tell what else catches it."""
+    """Returns a class's arguments; for an error its bases, which also catch it."""
     if thing.name.endswith(("Error", "Warning")):
         return f"({', '.join(str(base) for base in thing.bases)})" if thing.bases else ""
     init = thing.members.get("__init__")
@@ -114,7 +114,7 @@ def joined(annotations):
 
 
 def signature(function):
-    """(name: type = default, …) -> type; that of overloads has all their types."""
+    """Returns (name: type = default, …) -> type. Overloads are merged with all their types."""
     overloads = list(getattr(function, "overloads", None) or ()) or [function]
     parameters, star = [], False
     for parameter in overloads[0].parameters:
@@ -134,7 +134,7 @@ def signature(function):
 
 
 def text(docstring, parameters=()):
-    """A docstring as Markdown: what it says of a parameter is an item of a list."""
+    """Returns a docstring as Markdown, with parameters as items of a list."""
     def item(match):
         names = match.group(1).split(", ")
         if not parameters or not all(name in parameters for name in names):

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Says in one line how many tests of a run were skipped, why, and what would run them.
+"""Says in one line how many tests were skipped, why, and what would run them.
 
-usage: skipped_tests.py JUNIT.XML   (what `ctest --output-junit` writes)
+usage: skipped_tests.py JUNIT.XML   (from `ctest --output-junit`)
 """
 import collections
 import re
@@ -25,7 +25,7 @@ def remedy(output):
 
 
 def summary(file):
-    """The line; empty if nothing was skipped."""
+    """Returns the line, empty if nothing was skipped."""
     tests = list(xml.etree.ElementTree.parse(file).iter("testcase"))
     skipped = [test for test in tests if test.find("skipped") is not None]
     reasons = collections.Counter(remedy(test.findtext("system-out") or "") for test in skipped)

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Puts the licences of the libraries that auditwheel will carry along into a wheel.
+"""Puts the licences of the libraries that auditwheel copies into a wheel there too.
 
 usage: wheel_licences.py WHEEL
 
-They are Debian's (/usr/share/doc/PACKAGE/copyright), of every library that the wheel's modules are linked with and
-that no manylinux system has. A library without a licence to be found is an error.
+The licences are Debian's (/usr/share/doc/PACKAGE/copyright), for every library that the wheel's modules link and that
+manylinux systems lack. A library without a licence is an error.
 """
 import base64
 import hashlib
@@ -15,13 +15,13 @@ import sys
 import tempfile
 import zipfile
 
-# Libraries that every system has by the rules of manylinux (PEP 600), so wheels do not carry them.
+# Libraries that every manylinux system has (PEP 600), so wheels do not contain them.
 OF_THE_SYSTEM = ("libc.so", "libm.so", "libpthread.so", "libdl.so", "librt.so", "libstdc++.so", "libgcc_s.so",
                  "ld-linux", "linux-vdso")
 
 
 def libraries(module):
-    """Paths of the libraries that a module needs beyond the system's."""
+    """Returns the paths of the libraries that a module needs beyond the system's."""
     said = subprocess.run(["ldd", module], capture_output=True, text=True, check=True).stdout
     for line in said.splitlines():
         name, arrow, rest = line.strip().partition(" => ")
@@ -30,7 +30,7 @@ def libraries(module):
 
 
 def licence(library):
-    """(package, its licence)"""
+    """Returns (package, its licence)."""
     # On systems with a merged /usr, dpkg may know the file by its older name, without /usr.
     for name in (str(library), str(library).removeprefix("/usr")):
         found = subprocess.run(["dpkg", "-S", name], capture_output=True, text=True)

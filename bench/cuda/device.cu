@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The device's side of the benchmarks. Tests compile this file as C++, for the CPU.
+// The device side of the benchmarks. Tests compile this file as C++ for the CPU.
 #include <bench/cuda/device.hpp>
 
 #include <rastrum/error.hpp>

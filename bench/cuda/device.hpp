@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The CUDA device as the benchmarks use it, without a header of CUDA. It is implemented in
-// device.cu, and in no_device.cpp where there is no CUDA compiler. All functions throw
-// Error{no_device} for errors that the driver reports.
+// The CUDA device for the benchmarks, without CUDA's headers: implemented in device.cu, and in
+// no_device.cpp for builds without a CUDA compiler. All functions throw Error{no_device} for errors
+// that the driver reports.
 #pragma once
 
 #include <cstddef>
@@ -26,7 +26,7 @@ class DeviceMemory {
   }
 
   [[nodiscard]] void* data() const { return data_; }
-  /// Both wait.
+  /// Both wait for the end.
   void write(const void* from, std::size_t bytes);
   void read(void* to, std::size_t bytes) const;
 
@@ -34,7 +34,7 @@ class DeviceMemory {
   void* data_ = nullptr;
 };
 
-/// A copy of an array of the host's.
+/// A copy of a host array.
 template <class T>
 class DeviceArray {
  public:
@@ -51,8 +51,8 @@ class DeviceArray {
   std::size_t size_;
 };
 
-/// A stream beside the renderer's, as a program that draws its own arrays has one. Not waited for
-/// until it is destroyed.
+/// A stream beside the renderer's, like that of a program that draws its own arrays. Only the
+/// destructor waits for it.
 class StreamOfACaller {
  public:
   StreamOfACaller();
@@ -61,7 +61,7 @@ class StreamOfACaller {
   StreamOfACaller& operator=(const StreamOfACaller&) = delete;
 
   [[nodiscard]] void* handle() const;
-  /// `from` must stay until the stream is done.
+  /// `from` must live until the stream is done.
   template <class T>
   void write(const DeviceArray<T>& to, std::span<const T> from) {
     write(to.memory(), from.data(), from.size_bytes());
@@ -73,19 +73,19 @@ class StreamOfACaller {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The words that are timed, and a copy, which says what the device's memory gives.
+/// The words that are timed, and a copy, which measures the memory's bandwidth.
 enum class Word : std::uint8_t { copy, exclusive_scan, sort_by_key, reduce_by_index, expand };
 
 /// The input of the words. All arrays have the same length, except `counts`.
 struct WordInput {
   std::vector<std::uint32_t> keys, values;
-  std::vector<std::uint32_t> index;   ///< of a bin, below `bins`
+  std::vector<std::uint32_t> index;   ///< of bins, below `bins`
   std::vector<std::uint64_t> words;   ///< copied, and folded into bins by their maximum
-  std::vector<std::uint32_t> counts;  ///< scanned; and how often each owner is written by expand
+  std::vector<std::uint32_t> counts;  ///< scanned; also how many results of expand each owner has
   std::size_t bins = 0;
 };
 
-/// The words on the device, over a copy of the input.
+/// Runs the words on the device, on a copy of the input.
 class DeviceWords {
  public:
   explicit DeviceWords(const WordInput& input);
@@ -93,7 +93,7 @@ class DeviceWords {
   DeviceWords(const DeviceWords&) = delete;
   DeviceWords& operator=(const DeviceWords&) = delete;
 
-  /// Waits. sort_by_key copies its pairs first, reduce_by_index empties its bins.
+  /// Waits for the end. sort_by_key copies its pairs first, reduce_by_index empties its bins.
   void run(Word word);
   /// The output of the last run. For sort_by_key, key and value share an element.
   [[nodiscard]] std::vector<std::uint64_t> result() const;

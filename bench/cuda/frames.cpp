@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum bench cuda-frames`: frames of real meshes by a GPU beside the threads', opaque and
-// translucent, with arrays and picture in its memory and in the host's. Every picture is compared
-// with the threads' first, bit by bit.
+// `rastrum bench cuda-frames`: frames of real meshes on a GPU beside the threads', opaque and
+// translucent, with arrays and picture in its memory and in the host's. Every picture is first
+// compared with the threads', bit by bit.
 #include <cstdio>
 #include <optional>
 #include <string>
@@ -33,16 +33,16 @@ constexpr Look kLooks[] = {{"flat", Shader::flat, 1},
 
 constexpr std::string_view kScenes[] = {"bunny", "dragon", "brain", "bunny-4m", "bunny-17m"};
 
-/// Where there is no shared data.
+/// Used if there is no shared data.
 constexpr std::string_view kShapes[] = {"torus-knot", "gyroid"};
 
-/// One renderer, and where it finds the mesh and puts the picture.
+/// One renderer, and the memory of its mesh and picture.
 class Frames {
  public:
   Frames(const TableOptions& options, Device device, const MeshView& mesh)
       : renderer_({.device = device, .threads = options.threads}), mesh_(mesh) {}
 
-  /// Arrays and picture in the device's memory.
+  /// Moves arrays and picture to the device's memory.
   void go_there(const Mesh& mesh, int width, int height) {
     there_.emplace(
         mesh, sizeof(Rgba8) * static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
@@ -63,7 +63,7 @@ class Frames {
                                  frame.height, frame.width};
     stats_ = renderer_.render_in_place(scene, camera, frame, {.color8 = there});
   }
-  /// Copies the picture of draw() from the device's memory, if draw() leaves it there.
+  /// Copies draw()'s picture from the device's memory if it is there.
   void read(Image<Rgba8>& image) const {
     if (there_) there_->picture.read(image.pixels().data(), image.pixels().size_bytes());
   }

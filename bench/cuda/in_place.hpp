@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Frames of meshes that lie in a device's memory, into pictures there (Renderer::render_in_place):
-// the frame as a simulation on the device has it, and as the papers time theirs.
+// Frames of meshes in a device's memory, into pictures there (Renderer::render_in_place), as a
+// simulation on the device has them. The papers time such frames.
 #pragma once
 
 #include <cstdint>
@@ -16,10 +16,10 @@
 
 namespace rastrum::bench {
 
-/// Positions and indices of meshes, drawn one after the other as one.
+/// Positions and indices of meshes, which are drawn one after the other as one.
 class MeshesInPlace {
  public:
-  /// Copies them to the device. Throws Error{out_of_memory}.
+  /// Copies a mesh to the device. Throws Error{out_of_memory}.
   void add(const MeshView& mesh);
 
   [[nodiscard]] const std::vector<InstanceView>& instances() const { return instances_; }
@@ -34,12 +34,12 @@ class MeshesInPlace {
 /// A renderer with its picture on the device.
 class InPlace {
  public:
-  /// The device is set; the shader must have a form there.
+  /// The options must name the device, and their shader must have a form for it.
   InPlace(const family::Options& options, const Camera& camera, int width, int height);
 
-  /// A frame that ends in 8-bit colours.
+  /// Draws a frame to 8-bit colours.
   FrameStats draw(const MeshesInPlace& meshes);
-  /// A frame that ends in visibility keys, or in ids.
+  /// Draws a frame to visibility keys, or to ids.
   [[nodiscard]] Image<std::uint64_t> keys(const MeshesInPlace& meshes, FrameStats& stats);
   [[nodiscard]] Image<std::int64_t> ids(const MeshesInPlace& meshes, FrameStats& stats);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The benchmarks without CUDA. choose_device has said so before anybody comes here.
+// The benchmarks' device in builds without CUDA. choose_device throws before these functions are
+// called.
 #include <bench/cuda/device.hpp>
 #include <rastrum/error.hpp>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A device's figures beside the times in the tables: items a second, and how far the time is from
-// the floor (the bytes that a frame must read and write, over the measured bandwidth).
+// A device's figures beside the times in the tables: items a second, and the time over the floor
+// (the bytes that a frame must read and write, over the measured bandwidth).
 #pragma once
 
 #include <cstdint>
@@ -13,18 +13,18 @@
 
 namespace rastrum::bench {
 
-/// The device's memory by the word that copies, best of several: half of what moves is read, half
-/// written, and floors take both alike. No arithmetic is measured: `gflops` is infinite.
+/// Measures the device's memory by a copy, best of several. Half of the bytes are read and half
+/// written; floors treat both alike. `gflops` is infinite, since arithmetic is not measured.
 [[nodiscard]] MachineLimits measure_device(const TableOptions& options);
-/// The GPU, its bandwidth and that of the bus, in words.
+/// The GPU, its bandwidth and the bus's, in words.
 [[nodiscard]] std::string device_note(const TableOptions& options, const MachineLimits& device);
 
-/// Positions and indices read once, RGBA8 written once. `vertices` 0: half as many as triangles, as
-/// closed meshes have.
+/// Positions and indices are read once, RGBA8 is written once. `vertices` 0: half the number of
+/// triangles, as in closed meshes.
 [[nodiscard]] double floor_ms(std::uint64_t triangles, std::uint64_t pixels,
                               const MachineLimits& device, std::uint64_t vertices = 0);
 
-/// A grid of 10⁶ items a second and times over the floor; places that were not measured are empty.
+/// A grid of 10⁶ items a second and times over the floor. Cells without a measurement stay empty.
 class Rates {
  public:
   Rates(std::string name, std::string first_column, std::string items = "triangles")

@@ -30,7 +30,7 @@ WordInput make_input(std::size_t n, std::size_t bins) {
   in.bins = bins;
   for (std::vector<std::uint32_t>* v : {&in.keys, &in.values, &in.index}) v->resize(n);
   in.words.resize(n);
-  // A share of owners, so that expand writes about n.
+  // Few enough owners that expand writes about n.
   in.counts.resize(n / 8);
   for (std::size_t i = 0; i < n; ++i) {
     const std::uint64_t r = random();
@@ -43,7 +43,7 @@ WordInput make_input(std::size_t n, std::size_t bins) {
   return in;
 }
 
-/// The threads' words, as DeviceWords runs the device's.
+/// The threads' words, with the interface of DeviceWords.
 class HostWords {
  public:
   HostWords(const WordInput& in, int threads)
@@ -106,7 +106,7 @@ class HostWords {
   parallel::Buffer<std::uint32_t> owners_;
 };
 
-/// A word, and the bytes that it must read and write once.
+/// A word, and the bytes that it must read and write.
 struct WordRow {
   Word word;
   const char* name;
@@ -135,7 +135,7 @@ constexpr std::array<WordRow, 5> kWordRows{
         return 4.0 * (static_cast<double>(in.counts.size()) + written);
       }}}};
 
-/// Returns false where a result is not the threads'.
+/// Returns false if a result differs from the threads'.
 bool bench_words(const TableOptions& options, Document& document) {
   const std::size_t n = options.quick ? kElements / 1024 : kElements;
   const WordInput input = make_input(n, options.quick ? kBins / 1024 : kBins);
@@ -201,7 +201,6 @@ int run_cuda(std::span<const std::string_view> arguments) {
   if (options.quick) shared.emplace_back("--quick");
   status = std::max(status, run_cuda_frames(shared));
   shared.insert(shared.end(), {"--device", "cuda"});
-  // The slowest tables come last.
   for (const auto table : {run_paper2, run_paper3, run_transparency})
     status = std::max(status, table(shared));
   if (!options.mesh.empty()) shared.insert(shared.end(), {"--mesh", options.mesh});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stands where the Embree peer was not built: its constructor says so.
+// Replaces the Embree peer in builds without it. Its constructor throws.
 #include "embree_peer.hpp"
 
 #include <rastrum/error.hpp>
@@ -11,7 +11,7 @@ struct EmbreePeer::Impl {};
 EmbreePeer::EmbreePeer(int) {
   throw Error(Errc::no_device, "Embree: this build is without it (Debian: libembree-dev)");
 }
-// No object exists, so nothing below is ever called.
+// No object exists, so these are never called.
 EmbreePeer::~EmbreePeer() = default;
 std::string EmbreePeer::description() const {
   return {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stands where the OpenGL peers were not built: their constructors say so.
+// Replaces the OpenGL peers in builds without them. Their constructors throw.
 #include <rastrum/error.hpp>
 
 #include "gl_materials.hpp"
@@ -23,7 +23,7 @@ struct GlTransparency::Impl {};
 GlPeer::GlPeer(int) {
   say_so();
 }
-// No object exists, so nothing below is ever called.
+// No object exists, so these are never called.
 GlPeer::~GlPeer() = default;
 std::string GlPeer::description() const {
   return {};

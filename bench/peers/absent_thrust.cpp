@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// In the place of thrust_peer.cpp where Thrust is not installed.
+// Replaces thrust_peer.cpp if Thrust is not installed.
 #include "thrust_peer.hpp"
 
 namespace rastrum::bench {

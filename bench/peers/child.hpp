@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Peers in other languages: a process that is told lines and answers with lines. One socket is its
-// stdin and stdout. Arrays go through files.
+// Peers in other languages: a process that answers lines with lines. One socket is its stdin and
+// stdout. Arrays go through files.
 #pragma once
 
 #include <sys/types.h>
@@ -16,17 +16,16 @@ namespace rastrum::bench {
 
 class Child {
  public:
-  /// Starts arguments[0], which is looked for along PATH. `who`: for messages. Throws
-  /// Error{no_device}.
+  /// Starts arguments[0], found along PATH. `who` is for messages. Throws Error{no_device}.
   Child(std::string who, std::vector<std::string> arguments);
-  /// It ends with its input.
+  /// Closes the process's input, which ends it.
   ~Child();
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
 
-  /// Throws Error{unsupported} where it has ended.
+  /// Throws Error{unsupported} if the process has ended.
   void tell(const std::string& text) const;
-  /// A line; empty where it has ended.
+  /// The next line; empty if the process has ended.
   [[nodiscard]] std::string line() const;
 
  private:
@@ -36,7 +35,7 @@ class Child {
   std::FILE* answers_ = nullptr;
 };
 
-/// A file for arrays on their way; gone with its owner.
+/// A file that carries arrays. The destructor removes it.
 class TemporaryFile {
  public:
   TemporaryFile();
@@ -45,7 +44,7 @@ class TemporaryFile {
   TemporaryFile& operator=(const TemporaryFile&) = delete;
   [[nodiscard]] const std::string& name() const { return name_; }
 
-  /// Writes spans, one behind the other.
+  /// Writes spans one behind the other.
   template <class... Values>
   void write(const Values&... values) const {
     std::ofstream out(name_, std::ios::binary);

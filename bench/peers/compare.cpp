@@ -84,7 +84,7 @@ std::uint64_t count_different(const Image<std::int64_t>& ours, const Image<std::
 }
 
 Mesh window_triangles(int width, int height, int count, std::uint64_t seed) {
-  // Plain arithmetic on the generator's bits: the distributions of <random> differ by library.
+  // Plain arithmetic on the generator's bits, because <random>'s distributions differ by library.
   std::mt19937_64 bits(seed);
   const auto between = [&](std::int64_t low, std::int64_t high) {
     return low + static_cast<std::int64_t>(bits() % static_cast<std::uint64_t>(high - low + 1));

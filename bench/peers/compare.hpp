@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rastrum's pictures against the peers', pixel by pixel.
+// Compares Rastrum's pictures with the peers', pixel by pixel.
 #pragma once
 
 #include <cstdint>
@@ -22,11 +22,11 @@ struct CountDifference {
 /// Colours at the pixels that either picture covers (alpha not 0).
 struct ColorDifference {
   std::uint64_t covered = 0;   ///< pixels that either covers
-  std::uint64_t one_only = 0;  ///< pixels that one alone covers; they count as far apart
+  std::uint64_t one_only = 0;  ///< pixels that only one covers; they count as far
   std::uint64_t far = 0;       ///< pixels with a channel that differs by more than `tolerance`
   int largest = 0;             ///< largest difference of a channel where both cover
 
-  /// The share of covered pixels within the tolerance; 1 where nothing is covered.
+  /// The share of covered pixels within the tolerance; 1 if nothing is covered.
   [[nodiscard]] double share() const {
     return covered == 0 ? 1 : 1 - static_cast<double>(far) / static_cast<double>(covered);
   }
@@ -34,8 +34,8 @@ struct ColorDifference {
 [[nodiscard]] ColorDifference compare_colors(const Image<Rgba8>& ours, const Image<Rgba8>& theirs,
                                              int tolerance);
 
-/// Premultiplied float pictures at the pixels that either covers (alpha not 0), as they look over
-/// black: displayed, so that more than 1 is 1.
+/// Compares premultiplied float pictures where either covers (alpha not 0), as displayed over
+/// black: values above 1 count as 1.
 struct PictureError {
   std::uint64_t covered = 0;  ///< pixels that either covers
   std::uint64_t far = 0;      ///< pixels with a channel, alpha too, farther apart than `tolerance`
@@ -56,12 +56,12 @@ struct PictureError {
                                             const Image<std::int32_t>& theirs);
 
 /// `count` random triangles whose vertices lie exactly on 1/256 px of a width × height image, from
-/// a pixel across to all of it, many of them with vertices on half pixels, so that samples lie
-/// exactly on edges. z = −0.5. All inside the image: OpenGL drivers clip at its sides, and round
-/// the new vertices.
+/// a pixel in size to the whole image. Many vertices lie on half pixels, so that samples lie
+/// exactly on edges. z = −0.5. All are inside the image, because OpenGL drivers clip at its sides
+/// and round the new vertices.
 [[nodiscard]] Mesh window_triangles(int width, int height, int count, std::uint64_t seed);
-/// Maps window coordinates (x, height − y) to pixels; float32 rounding stays far below 1/512 px, so
-/// that snapping gives back the exact position.
+/// Maps window coordinates (x, height − y) to pixels. float32 rounding stays far below 1/512 px, so
+/// snapping restores the exact position.
 [[nodiscard]] Camera window_camera(int width, int height);
 
 }  // namespace rastrum::bench

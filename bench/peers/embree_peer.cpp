@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The Embree peer; see the header. Compiled with -O3 (bench/CMakeLists.txt); the shading of a
-// packet is plain loops over its rays, cloned for AVX2 and AVX-512 and chosen at load.
+// The Embree peer; see the header. Compiled with -O3 (bench/CMakeLists.txt). A packet is shaded in
+// plain loops over its rays, cloned for AVX2 and AVX-512 and chosen at load time.
 #include "embree_peer.hpp"
 
 #include <embree3/rtcore.h>
@@ -15,8 +15,8 @@
 namespace rastrum::bench {
 namespace {
 
-/// Packets as wide as the machine traces natively. On AVX2 (Zen 3), 16 rays as 2 × 8 took 28.7 ms
-/// for the bunny at 1024² and 8 took 21.9, so the peer gets what suits it.
+/// Packets as wide as the machine traces natively. On AVX2 (Zen 3) the bunny at 1024² took 28.7 ms
+/// with 16 rays as 2 × 8, and 21.9 with 8.
 struct Packet8 {
   using RayHit = RTCRayHit8;
   static constexpr int kCount = 8, kWidth = 4;
@@ -28,7 +28,7 @@ struct Packet16 {
   static constexpr auto intersect = rtcIntersect16;
 };
 constexpr int kMaxPacket = 16;
-constexpr int kTile = 16;  ///< pixels a side of what a task traces at least
+constexpr int kTile = 16;  ///< pixels a side of the smallest task
 
 /// Inputs and outputs of shading, a value per ray.
 struct Shading {
@@ -38,7 +38,7 @@ struct Shading {
   alignas(64) std::uint32_t rgba[kMaxPacket];                        ///< bytes in memory order
 };
 
-/// `phong` of the issue, base (0.8, 0.7, 0.6), of `count` rays.
+/// The project's `phong`, base (0.8, 0.7, 0.6), for `count` rays.
 #if defined(__x86_64__)
 __attribute__((target_clones("avx512f", "avx2", "default")))
 #endif
@@ -75,8 +75,8 @@ void shade(Shading& s, int count) {
   }
 }
 
-/// The rays of a camera: direction = corner + x · across + y · down at pixel centre (x, y); its
-/// length along the view is 1, so that the ray parameter is the view depth.
+/// The rays of a camera: direction = corner + x · across + y · down at pixel centre (x, y). Its
+/// length along the view is 1, so the ray parameter is the view depth.
 struct Rays {
   Vec3 origin, corner, across, down;
   float near_depth, far_depth;
@@ -155,7 +155,7 @@ struct EmbreePeer::Impl {
                   "Embree error " + std::to_string(e) + " in build");
   }
 
-  /// Takes its scene away, which borrows the buffers.
+  /// Changes the geometry's type. Releases the scene, which borrows the buffers.
   void become(RTCGeometryType to) {
     if (scene != nullptr) rtcReleaseScene(scene);
     scene = nullptr;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Embree primary rays: the peer from the other family. One ray through each pixel centre, in
-// packets of 16 (4 × 4 pixels) where the machine traces those natively, else 8 (4 × 2), shaded with
-// the same `phong`.
+// Embree's primary rays, the peer that traces rays: one through each pixel centre, shaded with the
+// same `phong`. Packets have 16 rays (4 × 4 pixels) if the machine traces those natively, else 8 (4
+// × 2).
 #pragma once
 
 #include <cstdint>
@@ -25,19 +25,19 @@ class EmbreePeer {
 
   [[nodiscard]] std::string description() const;
 
-  /// Copies the mesh into buffers with the padding that Embree asks for. Needs normals that share
-  /// the positions' indices; throws Error{invalid_argument} otherwise.
+  /// Copies the mesh into buffers with Embree's padding. Throws Error{invalid_argument} unless the
+  /// normals share the positions' indices.
   void set_mesh(const MeshView& mesh);
-  /// Spheres instead (RTC_GEOMETRY_TYPE_SPHERE_POINT); copies them. A radius each.
+  /// Takes spheres instead (RTC_GEOMETRY_TYPE_SPHERE_POINT), a radius each; copies them.
   void set_spheres(std::span<const Vec3> centers, std::span<const float> radii);
-  /// Tubes instead (RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE); copies them. A radius a position;
-  /// polyline i has positions [offsets[i], offsets[i + 1]).
+  /// Takes tubes instead (RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE), a radius per position; copies
+  /// them. Polyline i has positions [offsets[i], offsets[i + 1]).
   void set_tubes(std::span<const Vec3> positions, std::span<const float> radii,
                  std::span<const std::uint32_t> offsets);
-  /// Builds the acceleration structure anew, at Embree's default quality.
+  /// Rebuilds the acceleration structure at Embree's default quality.
   void build();
-  /// Traces and shades into `image`; transparent black where a ray meets nothing.
-  /// Throws Error{invalid_argument} before the first `build`.
+  /// Traces and shades into `image`; transparent black where a ray hits nothing. Throws
+  /// Error{invalid_argument} before the first `build`.
   void trace(const Camera& camera, ImageView<Rgba8> image);
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The OpenGL 4.5 functions that the peers call, fetched through EGL: so that nothing but libEGL is
-// linked, and a machine with another libGL works.
+// The OpenGL 4.5 functions that the peers call. EGL loads them, so only libEGL is linked, and any
+// libGL works.
 #pragma once
 
 #include <GL/glcorearb.h>
@@ -14,12 +14,12 @@ namespace rastrum::bench {
 /// eglGetProcAddress.
 using GlLoader = void (*(*)(const char* name))();
 
-/// A function of the driver as a pointer of the type that is asked for; null without a loader.
+/// Loads a function of the driver as the requested pointer type; null without a loader.
 struct GlFunction {
   GlLoader load;
   const char* name;
 
-  /// Throws Error{no_device} where the driver lacks it.
+  /// Throws Error{no_device} if the driver lacks the function.
   template <class Pointer>
   operator Pointer() const {  // NOLINT(google-explicit-constructor)
     if (load == nullptr) return nullptr;
@@ -30,7 +30,7 @@ struct GlFunction {
   }
 };
 
-/// All of them, fetched when it is made.
+/// All functions, loaded by the constructor.
 struct GlApi {
   GlLoader load = nullptr;
   PFNGLGETSTRINGPROC GetString = GlFunction{load, "glGetString"};

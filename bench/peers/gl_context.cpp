@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The OpenGL peers' context; see the header. The vertex shader multiplies the matrix in the written
-// order of transform_point, so that clip coordinates are those of Rastrum, and turns y over, so
-// that row 0 is the top. glClipControl(GL_UPPER_LEFT) would do that too, but Mesa 22.3 then gives
-// samples on horizontal edges to the triangle above (the bottom-left rule), found by drawing such
-// triangles.
+// The OpenGL peers' context; see the header. The vertex shader multiplies the matrix in the order
+// of transform_point, so that clip coordinates equal Rastrum's, and flips y, so that row 0 is the
+// top. glClipControl(GL_UPPER_LEFT) would flip too, but with it Mesa 22.3 gives samples on
+// horizontal edges to the triangle above (the bottom-left rule), as drawing such triangles showed.
 #include "gl_context.hpp"
 
 #include <EGL/eglext.h>
@@ -38,8 +37,7 @@ void main() {
 
 }  // namespace
 
-// v is the way to the viewer: eye − position, or one direction for an orthographic camera (eye.w =
-// 0).
+// v points to the viewer: eye − position, or one direction for an orthographic camera (eye.w = 0).
 const char* const kGlslPhong = R"(#version 450 core
 in vec3 n;
 in vec3 v;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The OpenGL peer of `material`; see the header. llvmpipe runs both sides of a branch and pays for
-// what a program could do, so that each material has a program of exactly what it has.
+// The OpenGL peer of `material`; see the header. llvmpipe executes both sides of a branch, so each
+// material has a program of exactly its features.
 #include "gl_materials.hpp"
 
 #include <array>
@@ -27,7 +27,7 @@
 namespace rastrum::bench {
 namespace {
 
-/// Features that a program is compiled for, a bit each.
+/// The features of a program, a bit each.
 enum Feature : unsigned {
   kBaseTexture = 1,
   kMetallicRoughness = 2,
@@ -39,7 +39,7 @@ enum Feature : unsigned {
 };
 constexpr std::array<const char*, 7> kFeatureNames = {
     "BASE_TEXTURE", "METALLIC_ROUGHNESS", "OCCLUSION", "EMISSIVE", "ALPHA_MAP", "MASK", "COLORS"};
-/// The first of these features bring a texture, whose unit is the feature's bit.
+/// The first of these features have a texture, whose unit is the feature's bit.
 constexpr int kTextures = 5;
 
 constexpr const char* kMore = R"(
@@ -52,8 +52,8 @@ void more() {
   tint = vertex_color;
 })";
 
-// `seen` is the side of the triangle that is seen: `v` lies on a plane, and its derivatives span
-// it.
+// `seen` is the visible side of the triangle's plane, from the derivatives of `v`, which lies in a
+// plane too.
 constexpr const char* kMain = R"(
 in vec3 n;
 in vec3 v;
@@ -174,7 +174,7 @@ struct Vertex {
   Vec4 color;
 };
 
-/// Where a corner's values lie among those of its instance: what is equal is one vertex.
+/// The indices of a corner's values in its instance. Equal corners are one vertex.
 struct Corner {
   std::uint32_t instance;
   std::size_t position, normal, texcoord, color;
@@ -189,7 +189,7 @@ struct CornerHash {
   }
 };
 
-/// The triangles of one material that are culled alike; in the order in which they are drawn.
+/// Triangles of one material and one culling, in drawing order.
 struct Group {
   bool has_mask;
   const raster::BoundMaterial* material;
@@ -198,7 +198,7 @@ struct Group {
   auto operator<=>(const Group&) const = default;
 };
 
-/// Indices that one call draws.
+/// The indices of one draw call.
 struct Batch {
   GlProgram program;
   GLint factors = -1;
@@ -242,7 +242,7 @@ struct GlMaterials::Impl {
   explicit Impl(int threads) : context(threads) {
     gl.GenBuffers(2, buffers);
     gl.Enable(GL_FRAMEBUFFER_SRGB);
-    gl.FrontFace(GL_CW);  // the vertex shader turns y over
+    gl.FrontFace(GL_CW);  // the vertex shader flips y
     context.check("start");
   }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The `material` shader on OpenGL: the formula of rastrum/raster/shade/material.hpp in GLSL, drawn
-// forward by Mesa's llvmpipe, a draw a material.
+// forward by Mesa's llvmpipe, one draw per material.
 #pragma once
 
 #include <memory>
@@ -13,12 +13,11 @@
 namespace rastrum::bench {
 
 /// Draws one scene at a time by the conventions of `docs/conventions.md`. Triangles are sorted by
-/// material, those with masks last, so of equal depths another one may win than with us.
-/// One OpenGL peer at a time in a process; bound to the thread that made it.
+/// material, masked ones last, so equal depths may resolve differently from ours. Only one OpenGL
+/// peer at a time in a process; bound to the thread that made it.
 class GlMaterials {
  public:
-  /// Starts EGL with llvmpipe on `threads` rasterizing threads (Mesa reads that once a process).
-  /// Throws Error{no_device} saying what is missing.
+  /// Starts llvmpipe like GlContext. Throws Error{no_device}, which says what is missing.
   explicit GlMaterials(int threads = 2);
   ~GlMaterials();
   GlMaterials(const GlMaterials&) = delete;
@@ -27,12 +26,12 @@ class GlMaterials {
   /// GL_VERSION and GL_RENDERER.
   [[nodiscard]] std::string description() const;
 
-  /// Copies the meshes into static buffers (equal corners share a vertex) and the textures, with
-  /// our own levels, so that pictures differ by the filter alone. Throws Error{unsupported} for
-  /// what the peer does not draw: materials that blend, that are unlit or have normal maps, and
-  /// instances with a look of their own.
+  /// Copies the meshes into static buffers (equal corners share a vertex) and the textures with our
+  /// own levels, so that pictures differ only by the filter. Throws Error{unsupported} for what the
+  /// peer cannot draw: materials that blend, are unlit or have normal maps, and instances with a
+  /// look of their own.
   void set_scene(const SceneView& scene);
-  /// As GlPeer's; the camera must be a perspective one (Error{unsupported}).
+  /// As GlPeer's, for perspective cameras (else Error{unsupported}).
   void set_view(const Camera& camera, int width, int height);
 
   /// Clears, draws and waits for the end (glFinish).

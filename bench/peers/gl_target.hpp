@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The target of the OpenGL peers for opaque things: a framebuffer object of renderbuffers.
+// The OpenGL peers' target for opaque surfaces: a framebuffer object of renderbuffers.
 #pragma once
 
 #include "gl_context.hpp"
 
 namespace rastrum::bench {
 
-/// One colour format, and 32-bit float depth.
+/// Has one colour format and 32-bit float depth.
 class GlTarget {
  public:
   explicit GlTarget(GLenum color_format) : color_format_(color_format) {}
 
-  /// Binds it, made of the view's size at its first use. Throws Error{unsupported} where the driver
-  /// has no such framebuffer.
+  /// Binds the target. The first call makes it, in the view's size. Throws Error{unsupported} if
+  /// the driver has no such framebuffer.
   void bind(const GlContext& context);
-  /// After a change of the view's size.
+  /// Call this after the view's size has changed.
   void release(const GlContext& context);
 
  private:

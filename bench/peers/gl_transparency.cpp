@@ -12,7 +12,7 @@
 namespace rastrum::bench {
 namespace {
 
-/// Nodes of one buffer, a power of two: 128 MiB, what llvmpipe binds at most.
+/// Nodes of one buffer, a power of two: 128 MiB, the most that llvmpipe binds.
 constexpr std::uint64_t kNodesPerBuffer = 1U << 23;
 constexpr int kHeads = 0, kFirstNodes = 1;  ///< bindings of storage buffers
 
@@ -24,7 +24,7 @@ void main() { color = vec4(phong() * opacity, opacity); })";
 constexpr const char* kNothing = R"(#version 450 core
 void main() {})";
 
-/// Fragments not nearer than what the pass before has peeled stay.
+/// Discards fragments that are at or in front of what the last pass peeled.
 constexpr const char* kPeelMain = R"(
 uniform float opacity;
 uniform bool first;
@@ -45,8 +45,8 @@ layout(binding = 0) uniform sampler2D layer;
 layout(location = 0) out vec4 color;
 void main() { color = texelFetch(layer, ivec2(gl_FragCoord.xy), 0); })";
 
-/// Heads, and as many buffers of nodes as there have to be; node 0 is none. llvmpipe runs both
-/// sides of a branch, so that a scene which needs one buffer must not have the others in its code.
+/// Declares the heads and as many node buffers as needed; node 0 is the end. llvmpipe executes both
+/// sides of a branch, so unneeded buffers must not be in the code.
 std::string list_storage(int buffers) {
   const auto each = [&](auto&& text) {
     std::string all;
@@ -86,9 +86,9 @@ void main() {
                 gl_FragCoord.z, next));
 })";
 
-/// The 64 nearest fragments that are not blended yet are sorted by insertion, then blended, until
-/// none is left: any length. Later nodes of a list were submitted earlier and are in front at equal
-/// depth.
+/// Sorts the 64 nearest unblended fragments by insertion and blends them, until none is left. So
+/// lists may have any length. Later nodes of a list were submitted earlier and are in front at
+/// equal depth.
 constexpr const char* kResolveMain = R"(
 uniform int width;
 layout(location = 0) out vec4 color;
@@ -149,13 +149,13 @@ struct GlTransparency::Impl {
   GLuint copy, resolve = 0;
   GLuint query = 0;
   std::uint64_t fragments = 0;
-  /// Targets by precision, made at their first use; `layers` take turns.
+  /// Targets by precision, made at their first use. The passes alternate between two `layers`.
   std::array<Surface, 2> pictures{};
   std::array<std::array<Surface, 2>, 2> layers{};
   const Surface* last = nullptr;
   GLuint heads = 0;
   std::vector<GLuint> nodes;
-  int list_buffers = 0;  ///< that `list` and `resolve` were compiled for
+  int list_buffers = 0;  ///< the number that `list` and `resolve` were compiled for
 
   explicit Impl(int threads)
       : context(threads),
@@ -217,7 +217,7 @@ struct GlTransparency::Impl {
     gl.DrawArrays(GL_TRIANGLES, 0, 3);
   }
 
-  /// f's samples that pass.
+  /// Returns the number of samples that pass in f.
   template <class F>
   std::uint64_t counted(F&& f) const {
     gl.BeginQuery(GL_SAMPLES_PASSED, query);
@@ -246,7 +246,7 @@ struct GlTransparency::Impl {
     return {};
   }
 
-  /// Buffers and programs for the view's fragments.
+  /// Makes the buffers and programs for the view's fragments.
   void prepare_lists() {
     if (heads != 0) return;
     const std::uint64_t wanted = (fragments + kNodesPerBuffer - 1) / kNodesPerBuffer;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Translucent surfaces by OpenGL (llvmpipe), three ways that users have: blended unsorted, exact by
+// Translucent surfaces by OpenGL (llvmpipe) in three usual ways: blended unsorted, exact by
 // per-pixel linked lists (Yang et al. 2010), exact by front-to-back depth peeling (Everitt 2001).
-// All shade `phong` as GlPeer does, every surface with one opacity, premultiplied, over nothing.
+// All shade `phong` as GlPeer does, with one opacity, premultiplied, over nothing.
 #pragma once
 
 #include <cstddef>
@@ -23,11 +23,11 @@ enum class GlBlending : std::uint8_t { unsorted, lists, peeling };
   return kNames[static_cast<std::size_t>(method)];
 }
 
-/// The format that the picture is blended in: RGBA8 as users have it, or RGBA32F to be compared
-/// with ours. The lists' colours are half floats in both.
+/// The blending format: RGBA8 as users have it, or RGBA32F for comparisons with ours. The lists'
+/// colours are half floats in both.
 enum class GlPrecision : std::uint8_t { rgba8, float32 };
 
-/// One at a time in a process, GlPeer included; bound to the thread that made it.
+/// Only one at a time in a process, GlPeer included; bound to the thread that made it.
 class GlTransparency {
  public:
   /// A node of the lists: colour as four half floats, depth, the next node's number.
@@ -41,19 +41,19 @@ class GlTransparency {
 
   [[nodiscard]] std::string description() const;
   void set_mesh(const MeshView& mesh);
-  /// Also counts the fragments, so that the lists are large enough: a pass that no draw pays for.
+  /// Also counts the fragments in an untimed pass, so that the lists are large enough.
   void set_view(const Camera& camera, int width, int height);
   /// The view's fragments, counted without a depth test.
   [[nodiscard]] std::uint64_t fragments() const;
 
   struct Frame {
     int passes = 1;        ///< over the geometry; peeling's last one finds nothing
-    bool complete = true;  ///< false: peeling ran out of patience, layers are missing
+    bool complete = true;  ///< false: peeling ran out of time, layers are missing
   };
-  /// Clears and draws, and waits for the end (glFinish). Peeling stops after a pass that ends later
-  /// than `patience_ms`, and loses fragments of equal depth, all but the first one of each pixel,
-  /// as it does everywhere. Throws Error{out_of_memory} where the lists exceed what the driver
-  /// binds (117 million fragments with llvmpipe).
+  /// Clears, draws, and waits for the end (glFinish). Peeling stops after a pass that ends later
+  /// than `patience_ms`. Like all peeling it keeps only the first of the fragments of equal depth
+  /// in a pixel. Throws Error{out_of_memory} if the lists exceed what the driver binds (117 million
+  /// fragments with llvmpipe).
   Frame draw(GlBlending method, float opacity, GlPrecision precision,
              double patience_ms = std::numeric_limits<double>::infinity());
   /// The last draw's picture, premultiplied.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench materials`: frames of the `material` shader beside the same formula in GLSL on
-// Mesa's llvmpipe, in one interleaved run, after their pictures have been compared.
+// Mesa's llvmpipe, in one interleaved run, after a comparison of their pictures.
 //
-// A frame of Rastrum goes from the caller's scene in memory to finished RGBA8 in memory; llvmpipe
-// has static buffers and textures, a draw a material, and ends with glFinish (its picture stays
-// where it is). It is timed as it is found, with the filters that it approximates.
+// A frame of Rastrum goes from the caller's scene in memory to finished RGBA8 in memory. llvmpipe
+// has static buffers and textures and one draw per material; its frame ends with glFinish, and the
+// picture stays in place. llvmpipe is timed as installed, with its approximate filters.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -33,22 +33,22 @@ namespace {
 
 constexpr double kMaterialsGoal = 6;  ///< llvmpipe's time over ours, textured
 
-// As `peers` has them. The least was 99.979 %, within sponza: at the edges of holes, where a mask's
-// alpha is its cutoff but for rounding; elsewhere at silhouettes and between nearly equal depths.
+// The same limits as in `peers`. The least share was 99.979 %, inside sponza. Pixels differ at the
+// edges of holes, where a mask's alpha is its cutoff but for rounding, at silhouettes, and between
+// nearly equal depths.
 constexpr int kMaterialsTolerance = 1;  ///< of 255
 constexpr double kMaterialsShare = 0.999;
 
 struct MaterialsOptions : PeerOptions {
-  std::string pictures;  ///< the folder of both pictures of each row; empty: none
+  std::string pictures;  ///< the folder for both pictures of each row; empty: none
 };
 
-/// A scene, and where it is seen from.
 struct MaterialsScene {
   Scene scene;
   std::vector<std::pair<std::string, Camera>> views;
 };
 
-/// Sponza as its file has it, from outside and from within; of others the geometry alone.
+/// Sponza with its materials, from outside and inside; other scenes as geometry only.
 MaterialsScene materials_scene(const SceneInfo& info) {
   MaterialsScene s;
   const std::string name(info.name);
@@ -62,14 +62,13 @@ MaterialsScene materials_scene(const SceneInfo& info) {
   const SceneBinding bound(s.scene);
   s.views.emplace_back(name, fit_camera(bound.view(), Camera{}.fov_rad, false));
   if (is_hall) {
-    // Sees along the hall: cloth and walls near and far, leaves with masks.
+    // Looks along the hall: cloth and walls near and far, leaves with masks.
     constexpr std::size_t kStep = 7;
     s.views.emplace_back(name + ", within", walk(bound.view(), 24)[kStep]);
   }
   return s;
 }
 
-/// One view at one size.
 struct MaterialsRow {
   std::string scene;
   Size size;

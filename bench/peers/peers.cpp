@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench peers`: frames of Rastrum, OpenGL (Mesa llvmpipe) and Embree in one interleaved
-// run, after their pictures have been compared, with the floor of each frame.
+// run, after a comparison of their pictures, with the floor of each frame.
 //
-// A frame of Rastrum goes from the caller's mesh in memory to finished RGBA8 in memory; llvmpipe
-// has static buffers and ends with glFinish (its picture stays where it is); Embree traces and
-// shades into RGBA8, its build is told apart.
+// A frame of Rastrum goes from the caller's mesh in memory to finished RGBA8 in memory. llvmpipe
+// has static buffers; its frame ends with glFinish, and the picture stays in place. Embree traces
+// and shades into RGBA8; its build is timed separately.
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -28,7 +28,7 @@ namespace rastrum::bench {
 namespace {
 
 constexpr int kColorTolerance = 1;  ///< of 255
-// Rays meet other triangles than samples do at silhouettes and between nearly equal depths.
+// At silhouettes and between nearly equal depths, rays hit other triangles than samples.
 constexpr double kLeastShareGl = 0.999, kLeastShareEmbree = 0.99;
 
 struct PeersOptions : PeerOptions {
@@ -40,21 +40,20 @@ struct Peers {
   Started<EmbreePeer> embree;
 };
 
-/// One scene at one size.
 struct Row {
   std::string scene;
   Size size;
   Workload work;
   std::uint64_t peak_bytes = 0;
   std::optional<double> share_gl, share_embree;  ///< pixels within the tolerance
-  bool right = true;                             ///< every picture is what it should be
+  bool right = true;                             ///< every picture is right
   std::optional<Timing> ours, gl, build, trace;
   Floor floor;
 
   [[nodiscard]] double ratio(const std::optional<Timing>& peer) const {
     return peer && ours ? median_ratio(*peer, *ours) : 0;
   }
-  /// Embree's build and trace against ours.
+  /// Embree's build and trace over ours.
   [[nodiscard]] double ratio_embree() const {
     return build && trace ? ratio(build) + ratio(trace) : 0;
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum bench peers-check`: coverage, fragment counts and `phong` against OpenGL's, by the rules
-// that the tests hold (tests/bench): 0 differing pixels where vertices lie on 1/256 px, at most 3
+// `rastrum bench peers-check`: compares coverage, fragment counts and `phong` with OpenGL's by the
+// limits of the tests (tests/bench): 0 differing pixels where vertices lie on 1/256 px, at most 3
 // on meshes, `phong` within 1/255 on 99.9 % of the covered pixels.
 #include <cstdio>
 #include <nlohmann/json.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which scenes and sizes a benchmark of the peers runs over: `--scenes`, `--sizes`, `--quick`.
+// The scenes and sizes of a peers' benchmark: `--scenes`, `--sizes`, `--quick`.
 #pragma once
 
 #include <optional>
@@ -28,18 +28,17 @@ class Selection {
 
   /// Adds the options; call `resolve` once they are parsed.
   void add_to(OptionParser& parser);
-  /// Replaces the defaults by what was asked for. Scenes whose files are absent are left out, each
-  /// with a line on stdout; where none of the files is here, the procedural shapes stand in, beside
-  /// those that were asked for.
-  /// Throws Error{invalid_argument} for a name or size that is none.
+  /// Replaces the defaults by what was asked for. Leaves out scenes whose files are absent, each
+  /// with a line on stdout. If all files are absent, the procedural shapes join the scenes that
+  /// were asked for. Throws Error{invalid_argument} for an invalid name or size.
   void resolve();
 
-  /// Other defaults than the constructor's.
+  /// Replaces the constructor's defaults.
   void set_sizes(std::vector<Size> sizes) { sizes_ = std::move(sizes); }
   void set_scenes(std::vector<SceneInfo> scenes) { scenes_ = std::move(scenes); }
 
   [[nodiscard]] const std::vector<SceneInfo>& scenes() const { return scenes_; }
-  /// Selected scenes whose data is not here.
+  /// Selected scenes whose data is absent.
   [[nodiscard]] const std::vector<SceneInfo>& absent() const { return absent_; }
   [[nodiscard]] const std::vector<Size>& sizes() const { return sizes_; }
 
@@ -49,13 +48,13 @@ class Selection {
   std::vector<std::string> scene_names_, size_names_;
 };
 
-/// The options of a benchmark of the peers.
+/// The options of a peers' benchmark.
 struct PeerOptions {
   int rounds = 9, threads = 2;
   std::string json;
 
-  /// Adds them and the selection's to `parser`, parses, and resolves the selection. The exit status
-  /// where there is nothing to run. Throws as Selection::resolve.
+  /// Adds these options and the selection's to `parser`, parses, and resolves the selection.
+  /// Returns the exit status if there is nothing to run. Throws as Selection::resolve does.
   [[nodiscard]] std::optional<int> read(OptionParser& parser, Selection& selection,
                                         std::span<const std::string_view> arguments);
 };

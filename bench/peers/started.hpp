@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Starts any peer where it is installed, and compares what it covers.
+// Starts a peer if it is installed, and compares its coverage.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace rastrum::bench {
 
-/// A peer that could be started, or why not.
+/// A started peer, or the reason why there is none.
 template <class P>
 struct Started {
   std::optional<P> peer;
@@ -20,10 +20,10 @@ struct Started {
   explicit operator bool() const { return peer.has_value(); }
   [[nodiscard]] std::string why_not() const { return peer ? "" : note; }
   P* operator->() { return &*peer; }
-  /// For people.
+  /// The note as a line of output.
   [[nodiscard]] std::string line() const { return (peer ? "peer: " : "left out: ") + note; }
 
-  /// None, for this reason.
+  /// No peer, for this reason.
   explicit Started(const char* why) : note(why) {}
   explicit Started(int threads) {
     try {
@@ -36,7 +36,6 @@ struct Started {
   }
 };
 
-/// Share of the pixels that are equal.
 template <class Ours, class T>
 double equal_share(const Ours& ours, const Image<T>& theirs) {
   std::size_t equal = 0;
@@ -45,7 +44,7 @@ double equal_share(const Ours& ours, const Image<T>& theirs) {
   return static_cast<double>(equal) / static_cast<double>(theirs.pixels().size());
 }
 
-/// Share of the pixels that either covers that both do.
+/// The share of the pixels that both cover among those that either covers.
 inline double common_coverage(const Image<Rgba8>& ours, const Image<Vec4>& theirs) {
   std::size_t either = 0, both = 0;
   for (int y = 0; y < ours.height(); ++y)

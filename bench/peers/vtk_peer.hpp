@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// VTK's depth peeling (dual where the driver can, which llvmpipe does), which is how scientists
-// draw translucent surfaces on CPUs today, its spheres, its points and its ambient occlusion:
-// Debian's python3-vtk9 in a child process (vtk_peer.py), so that nothing is built against VTK.
+// VTK's depth peeling (dual where the driver can, as llvmpipe can), which scientists use today to
+// draw translucent surfaces on CPUs; also its spheres, points and ambient occlusion. Debian's
+// python3-vtk9 runs in a child process (vtk_peer.py), so that nothing is built against VTK.
 #pragma once
 
 #include <memory>
@@ -16,31 +16,31 @@ namespace rastrum::bench {
 
 class VtkPeer {
  public:
-  /// Starts `$RASTRUM_VTK_PYTHON`, or /usr/bin/python3, and Xvfb where there is no display, with
-  /// llvmpipe on `threads` rasterizing threads. Throws Error{no_device} saying what is missing.
+  /// Starts `$RASTRUM_VTK_PYTHON` or /usr/bin/python3, and Xvfb if there is no display, with
+  /// llvmpipe on `threads` rasterizing threads. Throws Error{no_device}, which says what is
+  /// missing.
   explicit VtkPeer(int threads = 2);
   ~VtkPeer();
   VtkPeer(const VtkPeer&) = delete;
   VtkPeer& operator=(const VtkPeer&) = delete;
 
   [[nodiscard]] std::string description() const;
-  /// The mesh has indices, and normals that share them; else Error{invalid_argument}.
+  /// Throws Error{invalid_argument} unless the mesh has indices, and normals that share them.
   void set_mesh(const MeshView& mesh);
-  /// Spheres instead, by VTK's sphere mapper: a radius each.
+  /// Takes spheres instead, by VTK's sphere mapper: a radius each.
   void set_spheres(std::span<const Vec3> centers, std::span<const float> radii);
-  /// Points of one pixel instead, by VTK's point gaussian mapper without its splats.
+  /// Takes points of one pixel instead, by VTK's point gaussian mapper without splats.
   void set_points(std::span<const Vec3> positions);
-  /// The camera is a perspective one; else Error{unsupported}.
+  /// Throws Error{unsupported} unless the camera is a perspective one.
   void set_view(const Camera& camera, int width, int height);
 
-  /// From now on frames have screen-space ambient occlusion of this reach in the world, of 16
-  /// samples and blurred; 0: none.
+  /// Gives later frames screen-space ambient occlusion of this world radius, with 16 samples and
+  /// blur; 0: none.
   void set_occlusion(double radius);
 
-  /// Draws with the peers' `phong`, until no layer is left where the opacity is not 1; waits for
-  /// the end.
+  /// Draws with the peers' `phong` and waits for the end. Below opacity 1 it peels all layers.
   void draw(float opacity);
-  /// The last frame's colours, premultiplied, of 8 bits.
+  /// The last frame's colours, premultiplied, 8 bits.
   [[nodiscard]] Image<Vec4> picture();
 
  private:

@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""VTK's depth peeling, its sphere mapper, its points and its ambient occlusion, drawn for `rastrum bench
-transparency`, `spheres`, `points` and `effects` by a child process.
+"""Draws by VTK's depth peeling, sphere mapper, points and ambient occlusion, as a child process of `rastrum
+bench transparency`, `spheres`, `points` and `effects`.
 
-Debian's package (python3-vtk9) is built for X11: where there is no DISPLAY, Xvfb is started. Lines on
-stdin are commands, each is answered by one line on stdout, "done" or "error …":
+Debian's package (python3-vtk9) is built for X11, so Xvfb is started if there is no DISPLAY. Each line on
+stdin is a command; one line on stdout answers it, "done" or "error …":
 
     mesh FILE VERTICES TRIANGLES   positions, normals (float32 × 3), indices (uint32 × 3), raw
     spheres FILE COUNT             instead: places (float32 × 3), radii (float32), raw
     points FILE COUNT              instead: places (float32 × 3), raw; one pixel each
     view WIDTH HEIGHT FOV_RAD EX EY EZ TX TY TZ UX UY UZ
-    occlusion RADIUS               from now on by its pass for screen-space ambient occlusion; 0: without
-    draw OPACITY                   one frame, finished; peeled where it is not 1
+    occlusion RADIUS               later frames with its screen-space ambient occlusion; 0: without
+    draw OPACITY                   one finished frame; peeled if OPACITY is not 1
     picture FILE                   the frame as RGBA8, row 0 at the top, raw
 
-VTK's own light is replaced by the peers' `phong` (gl_context.cpp), so that all shade alike; normals are in
-camera space here, so its direction is turned into it.
+The peers' `phong` (gl_context.cpp) replaces VTK's own light. Normals are in camera space here, so the light's
+direction is transformed into it.
 """
 
 import array
@@ -24,7 +24,7 @@ import subprocess
 import sys
 
 answers = os.fdopen(os.dup(1), "w", buffering=1)
-os.dup2(2, 1)  # what libraries print is no answer
+os.dup2(2, 1)  # output of libraries must not mix with answers
 
 PHONG = """
   vec3 to_eye = cameraParallel != 0 ? vec3(0.0, 0.0, 1.0) : normalize(-vertexVC.xyz);
@@ -68,8 +68,8 @@ class Peer:
         self.renderer.SetBackground(0, 0, 0)
         self.renderer.SetBackgroundAlpha(0)
         self.renderer.SetUseDepthPeeling(True)
-        # Until nothing is left. 0 is documented as "no limit", but dual depth peeling (9.1) then
-        # peels nothing and blends unsorted.
+        # Peels until nothing is left. 0 is documented as "no limit", but then dual depth peeling (9.1) peels
+        # nothing and blends unsorted.
         self.renderer.SetMaximumNumberOfPeels(1 << 20)
         self.renderer.SetOcclusionRatio(0)
         self.window = vtk.vtkRenderWindow()
@@ -82,7 +82,7 @@ class Peer:
         shader = self.actor.GetShaderProperty()
         shader.ClearAllFragmentShaderReplacements()
         if self.phong:
-            # The pass for occlusion writes places and normals where VTK's own light stands, which ours then overwrites.
+            # The occlusion pass writes places and normals at VTK's light, which ours then overwrites.
             text = ("//VTK::Light::Impl\n" if self.occluded else "") + PHONG.replace("TOWARDS", ", ".join(f"{v:.9f}" for v in self.towards))
             shader.AddFragmentShaderReplacement("//VTK::Light::Impl", True, text, False)
 
@@ -197,7 +197,7 @@ class Peer:
         if self.occluded is None:
             steps, self.occluded = self.vtk.vtkRenderStepsPass(), self.vtk.vtkSSAOPass()
             self.occluded.SetDelegatePass(steps)
-            self.occluded.SetKernelSize(16)  # as many samples as ours
+            self.occluded.SetKernelSize(16)  # the same number as ours
             self.occluded.SetBlur(True)
             self.light()
         self.occluded.SetRadius(radius)
@@ -236,13 +236,13 @@ def main():
             command, *arguments = line.split()
             commands[command](*arguments)
             print("done", file=answers)
-    except Exception as e:  # whatever it is, the bench is to say it
+    except Exception as e:  # the bench reports any failure
         print("error", type(e).__name__ + ":", " ".join(str(e).split()), file=answers)
     finally:
         if server:
             server.terminate()
             server.wait()
-        os._exit(0)  # VTK would say goodbye to the display
+        os._exit(0)  # skips VTK's cleanup, which would use the display
 
 
 main()

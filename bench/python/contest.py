@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures from Python: a table of who draws them how fast (README.md beside this file).
+"""Times contenders that draw pictures from Python and prints a table (README.md beside this file).
 
 usage: contest.py [--only NAME…] [--wheel FILE] [--rounds N] [--seconds S] [--out DIR]
 """
@@ -15,18 +15,18 @@ import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-OURS = ("rastrum", "rastrum_normals")  # of one environment
+OURS = ("rastrum", "rastrum_normals")  # share an environment
 ALL = (*OURS, "opencv", "trimesh", "vtk", "pyvista", "pyrender", "open3d", "mitsuba")
 SIZES = (512, 1024)
 TRIANGLES = (1_000, 70_000, 1_000_000)
 TIMEOUT_S = 180
-# Contenders that draw another picture are left out: fewer common pixels than this share, or a larger median
-# relative difference of depth. Mitsuba's rays go through random places of their pixels.
+# A contender whose picture differs is left out: one with a smaller share of common pixels, or a larger median
+# relative difference of depth. Mitsuba's rays go through random places in their pixels.
 LEAST_SHARE, MOST_OFF = 0.99, 1e-3
 
 
 def requirements(name):
-    """Two lists: what pip installs, and what it installs with --no-deps."""
+    """Returns two lists: what pip installs, and what it installs with --no-deps."""
     scope = {"WITHOUT_DEPENDENCIES": []}
     for line in (HERE / "contenders" / f"{name}.py").read_text().splitlines():
         if line.startswith(("REQUIREMENTS", "WITHOUT_DEPENDENCIES")):
@@ -40,7 +40,7 @@ class Contender:
         self.python = self.folder / "bin" / "python"
         wanted, alone = ([str(wheel)], []) if name in OURS else requirements(name)
         marker, text = self.folder / "installed.txt", "\n".join(wanted + alone)
-        if name in OURS:  # a wheel that was made again has the same name
+        if name in OURS:  # a rebuilt wheel keeps its name
             text += hashlib.sha256(wheel.read_bytes()).hexdigest()
         if not marker.exists() or marker.read_text() != text:
             subprocess.run([sys.executable, "-m", "venv", "--clear", self.folder], check=True)
@@ -62,14 +62,14 @@ class Contender:
         return json.loads(done.stdout.splitlines()[-1])
 
     def process_s(self):
-        """A whole process: interpreter, imports, one small mesh, one picture."""
+        """Times a whole process: interpreter, imports, one small mesh, one picture."""
         begin = time.perf_counter()
         self.measure(512, 1000, 0)
         return time.perf_counter() - begin
 
 
 def compare(python, ours, theirs):
-    """(share of the pixels that either covers that both do, median of the relative differences of depth where both are)"""
+    """Returns (both / either of the covered pixels, median relative difference of depth where both cover)."""
     code = """
 import json, sys, numpy as np
 a, b = (np.load(f) for f in sys.argv[1:])
@@ -105,7 +105,7 @@ def main():
         except (subprocess.CalledProcessError, OSError) as e:
             wrong.append(f"{name}: not installed: {e}")
     ours = contenders[0].python
-    # Pictures first, compared with ours before anything is timed.
+    # Draws all pictures and compares them with ours before anything is timed.
     agreement = {}
     for c in list(contenders):
         try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""One contender's figures, as JSON on stdout. Started by contest.py in the contender's own environment.
+"""Measures one contender and prints JSON. contest.py starts it in the contender's own environment.
 
 usage: measure.py NAME SIZE TRIANGLES SECONDS PICTURE|-
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The scene of all contenders: a wavy ball of about a given number of triangles, and where it is seen from."""
+"""The scene of all contenders: a wavy ball of about a given number of triangles, and its camera."""
 import dataclasses
 import math
 
@@ -12,14 +12,14 @@ class Scene:
     faces: np.ndarray  # (M, 3) int64
     eye: np.ndarray
     target: np.ndarray
-    fov: float  # degrees, both ways: pictures are square
+    fov: float  # degrees, in both directions: pictures are square
     size: int
     near: float = 0.5
     far: float = 10.0
 
 
 def ball(triangles):
-    """Rings and segments with bumps, closed, counter-clockwise from outside."""
+    """Returns a closed ball of rings and segments with bumps, counter-clockwise from outside."""
     rings = max(4, round(math.sqrt(triangles / 4)))
     segments = 2 * rings
     polar = np.linspace(0, np.pi, rings + 1)[:, None]
@@ -39,7 +39,7 @@ def scene(triangles, size):
 
 
 def ring(n):
-    """(n, 4, 4): OpenGL's camera to world, around the y axis."""
+    """Returns (n, 4, 4) camera-to-world matrices of OpenGL, around the y axis."""
     poses = np.tile(np.eye(4), (n, 1, 1))
     a = 2 * np.pi * np.arange(n) / n
     poses[:, 0, 0] = poses[:, 2, 2] = np.cos(a)
@@ -49,6 +49,6 @@ def ring(n):
 
 
 def projection(scene):
-    """OpenGL's."""
+    """Returns OpenGL's projection matrix."""
     f, n, far = 1 / math.tan(math.radians(scene.fov) / 2), scene.near, scene.far
     return np.array([[f, 0, 0, 0], [0, f, 0, 0], [0, 0, (far + n) / (n - far), 2 * far * n / (n - far)], [0, 0, -1, 0]])

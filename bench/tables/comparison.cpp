@@ -10,7 +10,7 @@ namespace {
 
 std::string text_of(const Published& p, const std::string& unit) {
   if (p.value <= 0) return "—";
-  // As printed: 5.0 ms and 22.0 MB.
+  // In the paper's form: 5.0 ms and 22.0 MB.
   const auto printed = [&](double v) {
     const std::string number = shortest(v);
     return unit == "ms" && number.find('.') == std::string::npos ? number + ".0" : number;

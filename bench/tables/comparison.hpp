@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A published table with our figures beside it.
+// A published table beside our figures.
 #pragma once
 
 #include <cstdint>
@@ -15,19 +15,19 @@ namespace rastrum::bench {
 /// A figure measured here, in a table's unit.
 struct Measured {
   double value = 0;   ///< 0: not run
-  double spread = 0;  ///< half the distance of the quartiles over the median
+  double spread = 0;  ///< half the interquartile range over the median
   std::uint64_t scratch_bytes = 0;
-  std::uint64_t all_bytes = 0;  ///< scratch, mesh and picture; 0: memory is not of interest
-  std::string not_run = {};     ///< why, where it was not; empty where nobody asked
+  std::uint64_t all_bytes = 0;  ///< scratch, mesh and picture; 0: memory is not shown
+  std::string not_run = {};     ///< the reason; empty if nobody asked for it
   std::vector<double> samples_ms = {};
 };
 
 struct Comparison {
   struct Row {
     std::string name;  ///< e.g. the rasterizer: a line of a plot
-    std::string at;    ///< where it stands along x, e.g. a size; may be empty
+    std::string at;    ///< its place along x, e.g. a size; may be empty
     std::vector<Published> published;
-    std::vector<Measured> ours;  ///< may be empty: the paper's alone
+    std::vector<Measured> ours;  ///< may be empty: only the paper's figures
   };
   std::string caption;
   std::string unit;       ///< "ms" (smaller is better) or "FPS"
@@ -46,13 +46,13 @@ template <std::size_t Columns>
           std::vector<Measured>(Columns)};
 }
 
-/// Appends the table, a line of the paper's figures and one of ours beneath, and its figures as
-/// JSON: {"table", "row", "at", "column", "unit", "published": {…}, "here": {…}}.
+/// Appends the table, with a line of the paper's figures and one of ours below each other, and its
+/// figures as JSON: {"table", "row", "at", "column", "unit", "published": {…}, "here": {…}}.
 void add(Document& document, const Comparison& comparison);
 
-/// A panel a column; x: the rows' `at`; a colour a name; dashed: the paper, solid: ours.
+/// A panel per column; x: the rows' `at`; a colour per name; dashed: the paper's, solid: ours.
 [[nodiscard]] Plot lines_of(const Comparison& comparison, const std::string& x_title);
-/// One panel: a group a column, a bar a row; pale: the paper's.
+/// One panel: a group per column, a bar per row; pale: the paper's.
 [[nodiscard]] Plot bars_of(const Comparison& comparison);
 
 }  // namespace rastrum::bench

@@ -14,7 +14,7 @@
 namespace rastrum::bench {
 namespace {
 
-/// A bar would end a cell, a newline the table.
+/// Escapes what would end a cell (a bar) or the table (a newline).
 std::string cell(const std::string& text) {
   std::string out;
   for (const char c : text) {
@@ -24,7 +24,7 @@ std::string cell(const std::string& text) {
   return out;
 }
 
-/// Columns are padded, so that the table reads well unrendered too.
+/// Pads the columns, so that the table is readable as plain text.
 std::string to_markdown(const Grid& grid) {
   std::vector<std::size_t> widths;
   for (std::size_t c = 0; c < grid.columns.size(); ++c) {

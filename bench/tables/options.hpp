@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The options that all benches of tables share.
+// The options of all benches of tables.
 #pragma once
 
 #include <algorithm>
@@ -24,26 +24,25 @@ struct TableOptions {
   std::string mesh, out;
   bool quick = false;
   Device device = Device::threads;  ///< cuda: beside the threads
-  std::string gpu = {};             ///< its name
+  std::string gpu = {};             ///< the GPU's name
 
-  /// Adds them to `parser`, parses and resolves. The exit status where there is nothing to run.
-  /// Throws Error{no_device} where the device cannot be had.
+  /// Adds the options to `parser`, parses and resolves. Returns the exit status if there is nothing
+  /// to run. Throws Error{no_device} if the device is not available.
   [[nodiscard]] std::optional<int> read(OptionParser& parser,
                                         std::span<const std::string_view> arguments,
                                         bool takes_mesh = false);
   /// --device, for tables that can add a GPU's figures.
   void add_device(OptionParser& parser);
 
-  /// To be called after parsing. Throws Error{no_device} where the device cannot be had.
+  /// Call this after parsing. Throws Error{no_device} if the device is not available.
   void resolve();
   [[nodiscard]] bool on_cuda() const { return device == Device::cuda; }
   [[nodiscard]] static int cores() {
     return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   }
   [[nodiscard]] Plan plan() const { return {rounds, quick ? 1.0 : 30.0}; }
-  /// A published edge of a picture, or what a smoke test draws instead.
+  /// A published edge of a picture, or a smoke test's smaller one.
   [[nodiscard]] int size(int px) const { return quick ? std::max(8, px / 8) : px; }
-  /// A frame of that published size.
   [[nodiscard]] FrameOptions frame(int width_px, int height_px) const {
     return {.width = size(width_px), .height = size(height_px)};
   }
@@ -54,18 +53,17 @@ struct TableOptions {
     return "here, " + std::to_string(threads) + (threads == 1 ? " thread" : " threads") +
            (gpu.empty() ? "" : " and " + gpu);
   }
-  /// The same behind the frame's size.
+  /// The same after the frame's size.
   [[nodiscard]] std::string here(const FrameOptions& frame) const {
     return std::to_string(frame.width) + " × " + std::to_string(frame.height) + ", " + here();
   }
-  /// Without tables yet; a smoke test's has a warning.
+  /// A document without tables; a smoke test's has a warning.
   [[nodiscard]] Document document(std::string name, std::string title) const;
-  /// An empty plot of that document.
   [[nodiscard]] Plot plot(const Document& document, std::string x_title, std::string y_title) const;
   [[nodiscard]] family::Options render() const {
     family::Options options;
     options.threads = threads;
-    options.shader = Shader::id;  // where the façade shades: one colour a triangle
+    options.shader = Shader::id;  // for the façade's shader: one colour a triangle
     return options;
   }
 };
@@ -81,9 +79,9 @@ struct TableOptions {
   return e;
 }
 
-/// A GPU's ways, for subjects of the façade's shaders: a paper's own rasterizer with arrays and
-/// picture in its memory; the default with the host's, copied there each frame and the picture
-/// back; and the default with both there.
+/// A GPU's entrants, for subjects of the façade's shaders: a paper's own rasterizer with arrays and
+/// picture in GPU memory; the default with copies to it and of the picture back in each frame; and
+/// the default with both in GPU memory.
 [[nodiscard]] inline std::vector<Entrant> device_entrants(const TableOptions& options,
                                                           Entrant papers) {
   papers.name.append(", cuda, in place");
@@ -97,7 +95,7 @@ struct TableOptions {
   return {std::move(papers), std::move(copied), std::move(in_place)};
 }
 
-/// Says on stderr what is measured now: tables come at the end.
+/// Says on stderr what is measured now, because tables come at the end.
 inline void progress(const std::string& what) {
   std::fprintf(stderr, "  %s\n", what.c_str());
 }

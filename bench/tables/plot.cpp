@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// SVG by hand: a dozen shapes need no library. See the header.
+// Writes SVG by hand: a dozen shapes need no library. See the header.
 #include "plot.hpp"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ constexpr std::array kColors{"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                              "#e69f00", "#56b4e9", "#5b5b5b", "#8a6d00"};
 constexpr double kPlotWidth = 960, kMargin = 16;
 constexpr double kLeft = 56, kRight = 10, kAbove = 24, kBelow = 40;  ///< around a panel's axes
-constexpr double kCharacter = 7.3;  ///< width of a character at 12 px, about
+constexpr double kCharacter = 7.3;  ///< approximate width of a character at 12 px
 
 std::string escaped(const std::string& text) {
   std::string out;
@@ -68,7 +68,7 @@ std::string line(double x1, double y1, double x2, double y2, const char* style) 
                 style);
 }
 
-/// The values' range and the marks on it.
+/// The range of the values, and the ticks.
 struct Axis {
   double low = 0, high = 1;
   bool log = false;
@@ -130,7 +130,7 @@ struct Frame {
   }
 };
 
-/// The middle of place i, in [0, 1] across the panel.
+/// The centre of place i, from 0 to 1 across the panel.
 double place(const Plot& plot, std::size_t i) {
   const std::size_t n = plot.places.size();
   if (plot.x.size() != n || n < 2)
@@ -149,7 +149,7 @@ std::string draw_axes(const Plot& plot, const Panel& panel, const Axis& axis, co
   }
   svg += line(f.x, f.y, f.x, f.y + f.height, "stroke=\"#333\"");
   svg += line(f.x, f.y + f.height, f.x + f.width, f.y + f.height, "stroke=\"#333\"");
-  // Where neighbours' labels would touch, every second one is left out.
+  // If neighbouring labels would touch, every second one is left out.
   double widest = 0;
   for (const std::string& label : plot.places) widest = std::max(widest, length_px(label));
   double room = f.width;
@@ -211,7 +211,7 @@ std::string draw_bars(const Plot& plot, const Panel& panel, const Axis& axis, co
   return svg;
 }
 
-/// Each name once, in rows across the page. Returns the height used.
+/// Lists each name once, in rows across the page. Returns the height used.
 double draw_legend(const Plot& plot, double top, std::string& svg) {
   std::vector<std::string> names;
   double x = kMargin, y = top;
@@ -219,7 +219,7 @@ double draw_legend(const Plot& plot, double top, std::string& svg) {
     for (const Series& s : panel.series) {
       if (std::ranges::find(names, s.name) != names.end()) continue;
       names.push_back(s.name);
-      // A name that is measured somewhere is shown as measured.
+      // A name is pale only if no panel has it measured.
       const bool ghost = std::ranges::all_of(plot.panels, [&](const Panel& p) {
         return std::ranges::all_of(p.series,
                                    [&](const Series& o) { return o.name != s.name || o.ghost; });

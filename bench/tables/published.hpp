@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A figure as a paper prints it. The papers' tables are data, one file a paper.
+// A figure as a paper prints it. The papers' tables are data, one file per paper.
 #pragma once
 
 #include <array>
@@ -8,14 +8,13 @@
 
 namespace rastrum::bench {
 
-/// Time in ms or frames a second, as the table has it, and peak memory in MB (10⁶ bytes).
-/// 0: the paper has none.
+/// Time in ms or frames a second, as in the table, and peak memory in MB (10⁶ bytes). 0: not given.
 struct Published {
   double value = 0, mb = 0;
 };
 
-/// A line of a published table, a figure a column. `at` is where the line stands along what the
-/// table varies (a size, a share), for those that vary something.
+/// A line of a published table, with a figure per column. `at` is the line's value of what the
+/// table varies (a size, a share), if anything.
 template <std::size_t Columns>
 struct PublishedRow {
   std::string_view name;

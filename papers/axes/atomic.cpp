@@ -9,7 +9,7 @@
 namespace rastrum::family {
 namespace {
 
-/// The renderer's own, as a region.
+/// A region that one thread owns: the keys of the renderer's own path.
 class OwnedAtomicRegion final : public OnePassRegion {
  public:
   void begin(const RegionContext& context, const SurfaceView& surface, Rect rect,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// atomic on a device: the 64-bit maximum of keys (paper 1, section 3.2.1), a thread a sample.
+// atomic on a device: the 64-bit maximum of keys (paper 1, section 3.2.3), one thread a sample.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// atomic: the maximum of the 64-bit keys of all fragments, shading deferred (paper 1, section
-// 3.2.3). Where a thread owns the region it is a plain maximum over SIMD lanes.
+// atomic: keeps the maximum of the 64-bit keys of all fragments and shades later (paper 1, section
+// 3.2.3). A region that one thread owns takes a plain maximum over SIMD lanes.
 #pragma once
 
 #include <atomic>
@@ -11,10 +11,10 @@
 
 namespace rastrum::family {
 
-/// Work O(fragments), no scratch beyond the surface.
+/// Work O(fragments); no scratch beside the surface.
 [[nodiscard]] std::unique_ptr<Region> make_atomic(Sharing sharing, MemoryAccount& memory);
 
-/// Raises `key` to at least `value`; other threads may do the same.
+/// Raises `key` to at least `value`, while other threads do the same.
 template <class T>
 void raise_atomically(T& key, T value) {
   const std::atomic_ref<T> shared(key);

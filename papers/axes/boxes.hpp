@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The boxes of pieces in a view: how large they are, and the blocks that they touch. Functors for
-// host and device.
+// How large the box of a piece is in a view, and which blocks it touches: functors for host and
+// device.
 #pragma once
 
 #include <cstddef>
@@ -12,12 +12,13 @@
 
 namespace rastrum::family {
 
-/// Pixels of its box up to which a piece is small: paper 1, table 5, after Schütz et al., 2021.
+/// A piece is small if its box has at most this many pixels (paper 1, table 5, after Schütz et al.,
+/// 2021).
 inline constexpr std::uint64_t kSmallPx = 128;
-/// From which `binned` sends it through its queue: paper 2.
+/// `binned` queues a piece if its box has at least this many pixels (paper 2).
 inline constexpr int kLargePx = 4000;
 
-/// Pixels of a piece's box in the view.
+/// The number of pixels of a piece's box in the view.
 struct BoxArea {
   const Piece* pieces;
   Rect view;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How many fragments each chunk of a region has, and the runs of chunks whose fragments fit into a
-// budget: how the methods that keep fragments never keep too many.
+// Counts the fragments of each chunk of a region and finds runs of chunks whose fragments fit into
+// a budget. Methods that keep fragments draw one run at a time.
 #pragma once
 
 #include <algorithm>
@@ -22,15 +22,15 @@ class ChunkCounts {
     chunks_ = chunks;
     next_ = 0;
   }
-  /// Different chunks from different threads.
+  /// Threads may call this at once for different chunks.
   void add(std::size_t chunk, std::uint64_t fragments) { counts_[chunk] += fragments; }
 
   struct Run {
     Region::Pass chunks;
     std::uint64_t fragments = 0;
   };
-  /// The next chunks that have at most `most` fragments together, or one chunk that has more by
-  /// itself; no fragments: there are no more.
+  /// Returns the next chunks that have at most `most` fragments together, or one chunk that alone
+  /// has more. A run without fragments is the end.
   [[nodiscard]] Run take(std::uint64_t most) {
     Run run{{next_, next_}, 0};
     while (next_ < chunks_ && (run.fragments == 0 || run.fragments + counts_[next_] <= most))

@@ -15,8 +15,8 @@
 
 namespace rastrum::family {
 
-/// The family's entry points in the library of device code (parallel/cuda/library.hpp), which are
-/// added there by this name.
+/// The family's entry points in the library of device code (parallel/cuda/library.hpp), which
+/// registers them by this name.
 inline constexpr const char* kCudaRowsName = "the papers' rasterizers";
 struct CudaRows {
   std::unique_ptr<CudaRasterizer> (*make_rasterizer)(
@@ -24,14 +24,14 @@ struct CudaRows {
       std::uint64_t memory_limit, MemoryAccount& memory, parallel::Threads& threads);
   std::unique_ptr<terrain::DeviceRenderer> (*make_terrain_renderer)();
 };
-/// They, as the library has them. Throws Error{no_device}.
+/// The entry points of the loaded library. Throws Error{no_device}.
 [[nodiscard]] const CudaRows& cuda_rows();
-/// Alike, in words.cu.
+/// The device's `words` renderer (words.cu).
 [[nodiscard]] std::unique_ptr<terrain::DeviceRenderer> make_cuda_terrain_renderer();
 
-/// rastrum::make_cuda_rasterizer by `coverage` and `visibility`, names of rows, which are the
-/// host's but for `grouped`; by-size, with the sizes of the tuning, where `coverage` is empty.
-/// Throws Error{invalid_argument} where a device has no such row, Error{no_device}.
+/// A rasterizer that draws by the rows `coverage` and `visibility`; without `coverage`, by-size
+/// with the sizes of the tuning. The names are the host's, but a device has no `grouped`. Throws
+/// Error{invalid_argument} if a device has no such row, Error{no_device}.
 [[nodiscard]] std::unique_ptr<CudaRasterizer> make_cuda_rasterizer(
     std::string_view coverage, std::string_view visibility, const Tuning& tuning,
     std::uint64_t memory_limit, MemoryAccount& memory, parallel::Threads& threads);

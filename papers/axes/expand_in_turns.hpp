@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An expansion whose results are wanted in memory, but not more of them at once than a frame's
-// limit leaves room for: expand, a turn at a time. Without a limit there is one turn, and this is
-// expand.
+// An expansion that keeps its results in memory, in turns that fit into the frame's memory limit.
+// Without a limit there is one turn.
 #pragma once
 
 #include <algorithm>
@@ -16,9 +15,9 @@
 
 namespace rastrum::family {
 
-/// Calls f(results) for consecutive parts of expand(in, size, get), at least once; `result_bytes`
-/// is what f needs for each result, the result included. A turn is never smaller than one chunk of
-/// an expansion. Work O(n + total + f's). Returns how many results there were.
+/// Calls f(results) at least once, for consecutive parts of expand(in, size, get). `result_bytes`
+/// is what f needs for a result, the result included. A turn has at least one chunk of the
+/// expansion. Work O(n + total + f's). Returns the number of results.
 template <class In, class Size, class Get, class F>
 std::uint64_t expand_in_turns(Frame& frame, const In& in, Size&& size, Get&& get,
                               std::uint64_t result_bytes, F&& f) {
@@ -29,7 +28,7 @@ std::uint64_t expand_in_turns(Frame& frame, const In& in, Size&& size, Get&& get
                                : static_cast<std::size_t>(frame.expansion_bytes / result_bytes);
   const std::size_t chunks_at_once = std::max<std::size_t>(most / expansion.per_chunk(), 1);
   std::size_t first = 0;
-  do {  // once without results too: tiles without any are drawn
+  do {  // also runs without results: f draws tiles that have none
     const std::size_t last = first + std::min(chunks_at_once, expansion.chunks() - first);
     const std::size_t begin = expansion.chunk_begin(first);
     auto results = parallel::make_buffer<Result>(

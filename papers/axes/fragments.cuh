@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fragments of a turn on a device: the covered samples of its blocks, found again by their
-// number, a part of them in memory at a time.
+// The fragments of a turn on a device: the covered samples of its blocks. They are found again by
+// number, and only a part of them is in memory at a time.
 #pragma once
 
 #include <bit>
@@ -14,7 +14,7 @@
 
 namespace rastrum::family {
 
-/// By its element among the keys of a surface.
+/// A fragment by the index of its key in the surface.
 struct Fragment {
   std::uint32_t element;
   std::uint64_t key;
@@ -26,7 +26,7 @@ struct Fragment {
           DeviceSurface::key(pieces[b.piece], b.bx, b.by, i)};
 }
 
-/// Fragment k of the blocks that `plan` expands.
+/// Functor: fragment k of the blocks that `plan` expands.
 template <class Plan>
 struct FragmentAt {
   Plan plan;
@@ -53,8 +53,8 @@ struct WriteFragment {
   }
 };
 
-/// Calls f(at, begin, end) with a functor that makes fragment k of a turn, and the parts of at most
-/// `most` of them.
+/// Calls f(at, begin, end) for consecutive parts of at most `most` fragments of a turn. The functor
+/// `at` makes fragment k.
 template <class Exec, class F>
 void each_part_of_fragments(FamilyFrame<Exec>& frame, std::span<const Piece> pieces,
                             std::span<const Block> blocks, std::size_t most, F&& f) {
@@ -64,8 +64,8 @@ void each_part_of_fragments(FamilyFrame<Exec>& frame, std::span<const Piece> pie
   each_turn(places.size(), most, [&](std::size_t begin, std::size_t end) { f(at, begin, end); });
 }
 
-/// Calls f(elements, keys) with the fragments in memory, buffers that are f's to change; each may
-/// take `fragment_bytes`.
+/// Writes the fragments to memory part by part and calls f(elements, keys). f may change both
+/// buffers and may use `fragment_bytes` for each fragment.
 template <class Exec, class F>
 void each_written_part(FamilyFrame<Exec>& frame, std::span<const Piece> pieces,
                        std::span<const Block> blocks, std::uint64_t fragment_bytes, F&& f) {
@@ -81,9 +81,9 @@ void each_written_part(FamilyFrame<Exec>& frame, std::span<const Piece> pieces,
       });
 }
 
-/// Sorts the elements of a part's fragments; returns which fragment each was. A pixel's fragments
-/// are then a segment. All sorts of the family have these types, because CUB's sort is most of what
-/// nvcc compiles.
+/// Sorts the elements of a part's fragments, so that a pixel's fragments are a segment. Returns
+/// which fragment each one was. All sorts of the family use these types, because CUB's sort takes
+/// most of nvcc's time.
 template <class Exec, class Elements>
 [[nodiscard]] auto sort_by_pixel(FamilyFrame<Exec>& frame, Elements& element) {
   auto which = parallel::make_buffer<std::uint32_t>(frame.exec, element.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shared by the methods of visibility: the fragments of a block one by one, pixels of a rectangle
-// of blocks as numbers, and the maximum where a thread owns the memory or shares it.
+// Shared by the visibility methods: walks the fragments of a block, numbers the pixels of a
+// rectangle of blocks, and takes a maximum in memory that a thread owns or shares.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@ void raise(T& value, T candidate) {
   return n;
 }
 
-/// Below this many samples in a block their depths are computed one by one: all 64 at once cost as
+/// For at most this many samples of a block, depths are computed one by one: all 64 at once cost as
 /// much as about six.
 inline constexpr int kFewSamples = 6;
 
@@ -54,7 +54,7 @@ void for_each_fragment(const Kernels& kernel, const Piece& piece, const Block& b
   }
 }
 
-/// The pixels of a rectangle of blocks as numbers without gaps: 64 · block + sample, whatever the
+/// Numbers the pixels of a rectangle of blocks without gaps, 64 · block + sample, whatever the
 /// stride of the surface that holds their keys.
 class PixelNumbers {
  public:
@@ -67,14 +67,14 @@ class PixelNumbers {
   [[nodiscard]] std::uint32_t block(int bx, int by) const {
     return static_cast<std::uint32_t>((by - surface_.by0) * columns_ + (bx - surface_.bx0));
   }
-  /// The number of a fragment's pixel. Requires that the rectangle begins with the fragment's bin.
+  /// The number of a fragment's pixel. Requires that the rectangle begins where the fragment's bin
+  /// does.
   [[nodiscard]] std::uint32_t pixel(const BinFragment& f) const {
     if (columns_ == kBlocksPerBinRow) return f.pixel;
     const auto b = static_cast<int>(f.pixel / 64);
     return block(surface_.bx0 + b % kBlocksPerBinRow, surface_.by0 + b / kBlocksPerBinRow) * 64 +
            f.pixel % 64;
   }
-  /// The 64 keys of a block.
   [[nodiscard]] std::uint64_t* keys(std::uint32_t block) const {
     if (columns_ == surface_.columns) return surface_.keys + std::size_t{block} * 64;
     const auto b = static_cast<int>(block);

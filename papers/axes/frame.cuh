@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The papers' rasterizers on a device: what their two axes share. As on the host (frame.hpp) a
+// Shared by the two axes of the papers' rasterizers on a device. As on the host (frame.hpp), a
 // coverage enumerates the blocks of pieces and a visibility resolves them, and neither knows the
-// other; what passes between them is an array of blocks in the device's memory, a turn at a time.
+// other. Between them is an array of blocks in the device's memory, a turn at a time.
 //
-// Each turn is resolved for itself onto the keys, which only rise: so turns, like bands and
-// batches, change no bit, and nothing is enumerated twice. Beside the functors, which are the
-// host's, this is the device's own listing; the fast rasterizer of a device is by-size
-// (raster/cuda/by_size.cuh), which never writes a block.
+// Each turn is resolved by itself onto the keys, which only rise. So turns, like bands and batches,
+// change no bit, and nothing is enumerated twice. The functors are the host's. The fast rasterizer
+// of a device is by-size (raster/cuda/by_size.cuh), which never writes a block.
 #pragma once
 
 #include <algorithm>
@@ -26,9 +25,7 @@
 
 namespace rastrum::family {
 
-// Rows are made of what the renderer has: pieces, blocks, keys, surfaces.
-
-/// Bytes of a block of a turn, with its place among the fragments.
+/// Bytes of a block of a turn and of its place among the fragments.
 inline constexpr std::uint64_t kBlockBytes = sizeof(Block) + sizeof(std::size_t);
 
 struct FragmentCount {
@@ -43,7 +40,7 @@ struct FragmentCountAt {
   }
 };
 
-/// Calls f(block, i) for the covered samples of blocks, a thread a sample.
+/// Calls f(block, i) for the covered samples of blocks, one thread a sample.
 template <class F>
 struct CallWithSample {
   std::span<const Block> blocks;
@@ -75,15 +72,14 @@ template <class Exec>
 class DeviceVisibility {
  public:
   virtual ~DeviceVisibility() = default;
-  /// Raises the keys of the frame's surface to those of the covered samples of `blocks`, which are
-  /// `fragments` together, at least one. Masks may be empty; none reaches outside of the view.
+  /// Raises the keys of the frame's surface to those of the covered samples of `blocks`. There are
+  /// `fragments` ≥ 1 of them. Masks may be empty; none reaches outside of the view.
   virtual void resolve(FamilyFrame<Exec>& frame, std::span<const Piece> pieces,
                        std::span<const Block> blocks, std::uint64_t fragments) = 0;
-  /// After the last turn of the band.
+  /// Called after the last turn of the band.
   virtual void finish(FamilyFrame<Exec>&) {}
 };
 
-/// A band that is being drawn.
 template <class Exec>
 class FamilyFrame {
  public:
@@ -95,17 +91,17 @@ class FamilyFrame {
   const DeviceSurface& surface;
   const Tuning& tuning;
   const FragmentColors& shading;
-  std::uint64_t bytes;  ///< most that turns of all kinds may take together; 0: any
+  std::uint64_t bytes;  ///< the most that turns of all kinds may take together; 0: no limit
   DeviceVisibility<Exec>* visibility = nullptr;
   std::uint64_t fragments = 0;
   Counters counters;
 
-  /// How many results of an expansion a turn has room for: a coverage expands twice, to rows, bins
-  /// or entries of a queue and to blocks, and has a quarter of the bytes for each.
+  /// How many results of an expansion fit into a turn. A coverage expands twice: to rows, bins or
+  /// queue entries, and to blocks. Each expansion has a quarter of the bytes.
   [[nodiscard]] std::size_t most(std::uint64_t result_bytes) const {
     return share(bytes / 4, result_bytes);
   }
-  /// How many fragments may lie in memory: half of the bytes are for them.
+  /// How many fragments may be in memory. They have half of the bytes.
   [[nodiscard]] std::size_t most_fragments(std::uint64_t fragment_bytes) const {
     return share(bytes / 2, fragment_bytes);
   }
@@ -129,7 +125,7 @@ class FamilyFrame {
     // Fragments are numbered in 32 bits.
     constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max();
     if (bytes == 0) return kMost;
-    // An arena's blocks are up to a quarter larger than what was asked for.
+    // An arena's blocks can be a quarter larger than what was asked for.
     return std::clamp<std::size_t>(static_cast<std::size_t>(of_bytes / each / 5 * 4), 1, kMost);
   }
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A frame under way in a row of the family, and the two places where the axes of its table meet:
-// draw_shared and draw_tiles.
+// A frame that a row of the family draws. draw_shared and draw_tiles join the two axes of the
+// table.
 #pragma once
 
 #include <algorithm>
@@ -28,7 +28,7 @@
 
 namespace rastrum::family {
 
-/// The memory that a thread needs for a tile or a chunk. It is kept between frames.
+/// The memory that a thread needs for a tile or a chunk, kept between frames.
 struct Worker {
   explicit Worker(MemoryAccount& memory) : tile(memory) {}
 
@@ -39,8 +39,8 @@ struct Worker {
 
 class Frame;
 
-/// Collects the blocks of a chunk and hands them to a region: overdraw is counted and the fragment
-/// test is applied here, in every pass.
+/// Collects the blocks of a chunk and hands them to a region. It also counts overdraw and applies
+/// the fragment test, in every pass.
 class Emitter {
  public:
   Emitter(Frame& frame, Worker& worker, Region& region, std::size_t chunk, bool first_pass)
@@ -48,41 +48,41 @@ class Emitter {
   Emitter(const Emitter&) = delete;
   Emitter& operator=(const Emitter&) = delete;
 
-  /// The pieces that the blocks which follow refer to.
+  /// Sets the pieces that the following blocks refer to.
   void use(const Piece* pieces) {
     if (pieces == pieces_) return;
     flush();
     pieces_ = pieces;
   }
-  /// A block with the samples that it covers; an empty mask is left out.
+  /// Adds a block with the samples that it covers. An empty mask is left out.
   void add(const Block& block) {
     worker_.blocks[count_] = block;
     count_ += block.mask != 0;
     if (count_ == kBlockCapacity) flush();
   }
-  /// A block that touches the view and whose samples are still to be found, many at once.
+  /// Adds a block that touches the view. Its samples are found later, for many blocks at once.
   void add_uncovered(std::uint32_t piece, int bx, int by) {
     worker_.blocks[count_++] = {piece, static_cast<std::uint16_t>(bx),
                                 static_cast<std::uint16_t>(by), 0};
     to_cover_ = true;
     if (count_ == kBlockCapacity) flush();
   }
-  /// Room for kBlocksPerBin blocks or more, to be written by a kernel: say with `written` how many.
+  /// Room for kBlocksPerBin blocks or more, for a kernel to write. Call `written` with their
+  /// number.
   [[nodiscard]] std::span<Block> room() {
     if (kBlockCapacity - count_ < static_cast<std::size_t>(kBlocksPerBin)) flush();
     return {worker_.blocks + count_, kBlockCapacity - count_};
   }
   void written(std::size_t n) { count_ += n; }
-  /// Bounds of the depths that the tile hides by now; null where everything is to be enumerated.
+  /// Bounds of the depths that the tile hides by now; null if nothing may be left out.
   [[nodiscard]] DepthBounds* bounds() { return region_.bounds(); }
-  /// Updates bounds() by all that has been drawn so far.
+  /// Updates bounds() for all that has been drawn so far.
   void find_bounds() {
     flush();
     region_.find_bounds();
   }
-  /// Whether the chunk is enumerated for the first time.
   [[nodiscard]] bool first_pass() const { return first_pass_; }
-  /// Fragments of micro triangles, whose keys are known (Visibility::takes_fragments).
+  /// Adds fragments of micro triangles, whose keys are known (Visibility::takes_fragments).
   void fragments(Rect bin, std::span<const BinFragment> fragments);
 
   void flush();
@@ -107,7 +107,7 @@ struct FrameScratch {
   std::unique_ptr<Region> shared;
 };
 
-/// A frame under way in a row of the family.
+/// A frame that a row of the family draws.
 class Frame {
  public:
   Frame(raster::FrameRun& frame, const Tuning& t, bool hierarchical_z, const Visibility& v,
@@ -136,31 +136,30 @@ class Frame {
   Stopwatch& watch;
   const Tuning& tuning;
   /// Whether owned regions keep bounds of what they hide. False where overdraw is counted, since
-  /// hidden fragments count, too.
+  /// hidden fragments count too.
   const bool hides;
   const Visibility& visibility;
   FrameScratch& scratch;
-  const Rect view;            ///< what is being drawn: the image or a part of it
-  const SurfaceView surface;  ///< of the view; without keys tiles keep their own
+  const Rect view;            ///< the image, or the part of it that is drawn
+  const SurfaceView surface;  ///< of the view; if it has no keys, each tile keeps its own
   const std::uint64_t expansion_bytes;
 
   [[nodiscard]] bool has_surface() const { return base.has_surface(); }
-  /// For the region that all threads share.
   [[nodiscard]] RegionContext shared_context() const {
     return {{&request, &base.plan, &geometry, &kernel, base.fragment_bytes, nullptr}, &exec, false};
   }
-  /// For a region that the calling thread owns. All such regions share the budget.
+  /// For a region that the calling thread owns. All such regions share one budget.
   [[nodiscard]] RegionContext owned_context() const { return {base.context(), nullptr, hides}; }
   void count(std::string_view name, std::uint64_t value) { base.count(name, value); }
 };
 
-/// Enumerates into the region that all threads share, the view, as often as the visibility asks.
-/// `enumerate(chunk, emitter)` is called concurrently for chunks [0, chunks) and does the same each
-/// time.
+/// Enumerates into the region that all threads share, the whole view, as often as the visibility
+/// asks. `enumerate(chunk, emitter)` is called concurrently for chunks [0, chunks) and must do the
+/// same each time.
 ///
-/// `first_pass(visit)` runs the first pass, which is over all chunks, in an order of its own: it
-/// calls visit(chunk, part), from any thread, until the parts of each chunk in order,
-/// part(emitter), have done what enumerate(chunk, emitter) will do.
+/// `first_pass(visit)` runs the first pass over all chunks in any order. It calls visit(chunk,
+/// part), from any thread. The calls part(emitter) of a chunk, in order, do together what
+/// enumerate(chunk, emitter) does later.
 template <class FirstPass, class Enumerate>
 void draw_shared(Frame& frame, std::size_t chunks, const FirstPass& first_pass,
                  const Enumerate& enumerate) {
@@ -197,7 +196,8 @@ void draw_shared(Frame& frame, std::size_t chunks, const Enumerate& enumerate) {
 }
 
 /// Draws a tile (whole blocks, at most `tile_px` across) that the calling thread owns.
-/// `enumerate(emitter)` as above. It is shaded at once unless the frame has a surface.
+/// `enumerate(emitter)` must do the same each time. The tile is shaded at once unless the frame has
+/// a surface.
 template <class Enumerate>
 void draw_tile(Frame& frame, Rect rect, int tile_px, bool is_empty, const Enumerate& enumerate) {
   FrameScratch& scratch = frame.scratch;
@@ -230,8 +230,8 @@ inline void collect_tiles(Frame& frame) {
   });
 }
 
-/// Lets threads own the tiles of `grid` one by one. `is_empty(tile)` says that nothing would be
-/// enumerated; `enumerate(tile, emitter)` as above.
+/// Draws the tiles of `grid`; a thread owns each tile that it draws. `is_empty(tile)` is true if
+/// nothing would be enumerated; `enumerate(tile, emitter)` must do the same each time.
 template <class IsEmpty, class Enumerate>
 void draw_tiles(Frame& frame, const TileGrid& grid, const IsEmpty& is_empty,
                 const Enumerate& enumerate) {

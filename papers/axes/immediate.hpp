@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shared by the coverages that draw at once into the whole frame: the pieces of a batch by their
-// indices, and results of an expansion handed on as blocks without ever being written.
+// Shared by the coverages that draw directly into the whole frame: picks the pieces of a batch by
+// index, and hands results of an expansion on as blocks without storing them.
 #pragma once
 
 #include <cstddef>
@@ -15,12 +15,12 @@
 
 namespace rastrum::family {
 
-/// Results of a chunk that a region sees: few enough that small frames divide among threads, enough
-/// that a chunk's binary search and task vanish.
+/// Results of a chunk: few enough that small frames divide among threads, enough that the cost of a
+/// chunk's binary search and task vanishes.
 inline constexpr std::size_t kResultsPerChunk = 1024;
 
-/// Draws what an expansion of `in` makes: emit(in[i], j, emitter) adds the blocks of a result.
-/// Chunk c of the expansion is chunk c of the region, and holds the same in every pass.
+/// Draws the results of an expansion of `in`: emit(in[i], j, emitter) adds the blocks of result j.
+/// Chunk c of the expansion is chunk c of the region and is the same in every pass.
 template <class Expansion, class Chunk, class In, class Emit>
 void draw_chunks(Frame& frame, const Piece* pieces, const Expansion& expansion, const In& in,
                  const Emit& emit) {
@@ -43,17 +43,17 @@ void draw_expanded(Frame& frame, const Piece* pieces,
       frame, pieces, expansion, in, emit);
 }
 
-/// The indices of the pieces that may have a sample in the frame's view: where it is a band, a
-/// batch has others too. Work O(n); 4 bytes a piece.
+/// The indices of the pieces that may have a sample in the frame's view. If the view is a band, the
+/// batch has other pieces too. Work O(n); 4 bytes a piece.
 [[nodiscard]] parallel::Buffer<std::uint32_t> pieces_in_view(Frame& frame,
                                                              std::span<const Piece> pieces);
 
-/// The same with the small ones first: those whose box in the view has at most Tuning::small_px
-/// pixels (0: 128, paper 1, table 5). Counts "small" and "large".
+/// The same, small pieces first: those whose box in the view has at most Tuning::small_px pixels
+/// (0: 128, paper 1, table 5). Counts "small" and "large".
 [[nodiscard]] parallel::Partition<std::uint32_t> small_pieces_first(Frame& frame,
                                                                     std::span<const Piece> pieces);
 
-/// Draws small pieces at once: expands each to the blocks that its box touches. Work O(pieces +
+/// Draws small pieces directly: expands each to the blocks that its box touches. Work O(pieces +
 /// blocks), 8 bytes a piece.
 void draw_box_blocks(Frame& frame, const Piece* pieces, std::span<const std::uint32_t> which);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The family stands on the renderer's rooms, and names nothing that they have.
+// Makes the renderer's names visible in the family, which defines none of them itself.
 #pragma once
 
 namespace rastrum {

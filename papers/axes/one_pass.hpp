@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A region that wants to see everything once.
+// A region that needs a single pass over everything.
 #pragma once
 
 #include <utility>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The order in which the cells of a grid (tiles of a frame, bins of a box, tiles of a bin) are
-// walked. It changes no pixel: what changes is which memory is near in time.
+// The order in which the cells of a grid are walked: tiles of a frame, bins of a box, tiles of a
+// bin. It changes which memory is near in time, but no pixel.
 #pragma once
 
 #include <bit>
@@ -17,10 +17,10 @@ struct Cell {
   int column, row;
 };
 
-/// The cell that is walked as number `position` of a grid; requires position < columns · rows.
-/// Morton order is that of the enclosing square of a power of two with the cells outside of the
-/// grid left out: each quadrant's share of the grid is a rectangle, whose cells are counted without
-/// walking them. O(1) and O(log cells).
+/// The cell at `position` of the walk; requires position < columns · rows. Morton order is that of
+/// the enclosing power-of-two square without the cells outside of the grid. Each quadrant's share
+/// of the grid is a rectangle, so its cells are counted without walking them. O(1) in rows, O(log
+/// cells) in Morton order.
 [[nodiscard]] RASTRUM_HD constexpr Cell cell_at(BlockOrder order, std::size_t position, int columns,
                                                 int rows) {
   if (order == BlockOrder::row_major) {
@@ -46,7 +46,7 @@ struct Cell {
   return cell;
 }
 
-/// The tile of a grid that is walked as number `position`.
+/// The number of the tile at `position` of the walk.
 [[nodiscard]] RASTRUM_HD inline std::size_t tile_at(BlockOrder order, std::size_t position,
                                                     const TileGrid& grid) {
   if (order == BlockOrder::row_major) return position;

@@ -10,7 +10,7 @@
 namespace rastrum::family {
 namespace {
 
-/// Triangles of a task: what it makes stays in a core's L2 cache.
+/// Triangles of a task: few enough that its pieces stay in a core's L2 cache.
 constexpr std::uint64_t kGroup = 4096;
 
 }  // namespace

@@ -11,8 +11,8 @@
 
 namespace rastrum::family {
 
-/// Sets up triangles with all threads. Counts them in the frame's statistics.
-/// Memory: twice the pieces. Throws Error{invalid_argument} naming an index that is out of range.
+/// Sets up triangles with all threads and counts them in the frame's statistics. Memory: twice the
+/// pieces. Throws Error{invalid_argument}, which names an index that is out of range.
 class PieceArray {
  public:
   explicit PieceArray(MemoryAccount& memory) : memory_(memory), pieces_(memory) {}

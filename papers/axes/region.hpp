@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The second axis of the family (papers/README.md): how the many fragments of a pixel become
-// one. A visibility method resolves what a coverage enumerates: 8 × 8 blocks of pieces with their
-// masks, a few hundred a call. It sees a region of the screen, which one thread owns (a tile: plain
-// maxima, keys that stay in cache) or all share (a frame: atomics and locks).
+// The second axis of the family (papers/README.md): a visibility method resolves the many fragments
+// of a pixel to one. A coverage hands it 8 × 8 blocks of pieces with their masks, a few hundred a
+// call. It sees a region of the screen. One thread owns a tile (plain maxima, keys that stay in
+// cache); all threads share a frame (atomics and locks).
 #pragma once
 
 #include <cstddef>
@@ -29,37 +29,38 @@ struct RegionContext : BinContext {
   bool hides = true;                  ///< owned regions keep bounds()
 };
 
-/// Resolves the fragments of a rectangle into a surface. Used from `begin` to the `next` that
-/// returns nothing, again and again; keeps its scratch.
+/// Resolves the fragments of a rectangle into a surface. A use runs from `begin` to the `next` that
+/// returns nothing. The region keeps its scratch between uses.
 ///
-/// The caller enumerates the same blocks, cut into the same chunks, as often as `next` asks for
-/// it, and calls `blocks` with each chunk's blocks in order, different chunks from different
-/// threads where the region is shared.
+/// The caller enumerates the same blocks in the same chunks each time `next` asks for a pass. It
+/// calls `blocks` with each chunk's blocks in order. For a shared region, different threads call it
+/// with different chunks.
 class Region {
  public:
   virtual ~Region() = default;
 
-  /// `surface` holds what was drawn before and is raised: keys, and colours if the method shades.
+  /// `surface` holds what was drawn before: keys, and colours if the method shades. The region
+  /// raises them.
   virtual void begin(const RegionContext& context, const SurfaceView& surface, Rect rect,
                      std::size_t chunks) = 0;
 
-  /// Chunks [first, last) that the method wants to see now. The first pass is over all of them.
+  /// Chunks [first, last) that the method wants to see. The first pass is over all of them.
   struct Pass {
     std::size_t first = 0, last = 0;
   };
-  /// Ends a pass and says what the next one is; nothing: the surface is resolved.
+  /// Ends a pass and returns the next one; nothing once the surface is resolved.
   virtual std::optional<Pass> next() = 0;
 
-  /// No mask is empty and none reaches outside of the image.
+  /// No mask is empty, and none reaches outside of the image.
   virtual void blocks(std::size_t chunk, const Piece* pieces, std::span<const Block> blocks) = 0;
 
-  /// Bounds of what the bin of an owned region hides, for coverages that ask before they enumerate;
-  /// null where the method does not know them.
+  /// Bounds of what the bin of an owned region hides, for coverages that test before they
+  /// enumerate; null if the method does not know them.
   virtual DepthBounds* bounds() { return nullptr; }
-  /// Updates bounds(). Costs a look at all keys, so it pays where much may be hidden.
+  /// Updates bounds(). Reads all keys, so it pays only where much may be hidden.
   virtual void find_bounds() {}
 
-  /// Fragments whose key is known already, of a bin that the region is; only for methods that
+  /// Takes fragments with known keys, of the bin that the region is. Only for methods with
   /// `takes_fragments`.
   virtual void fragments(std::span<const BinFragment>) {}
 
@@ -72,16 +73,16 @@ enum class Sharing : std::uint8_t {
   shared  ///< `blocks` is called by many threads at once
 };
 
-/// A row of the table: a method of visibility.
+/// A row of the table: a visibility method.
 struct Visibility {
   std::string_view name, description;
   bool shades = false;           ///< fills SurfaceView::colors
-  bool takes_fragments = false;  ///< can be handed finished keys of micro triangles
-  /// Bytes of surface a pixel: keys, and what the method keeps beside them for a shared region; 0
-  /// where only tiles have surfaces.
+  bool takes_fragments = false;  ///< takes finished keys of micro triangles
+  /// Bytes of surface per pixel: keys, and what the method keeps beside them for a shared region. 0
+  /// if only tiles have surfaces.
   int surface_bytes = 8;
   std::unique_ptr<Region> (*make)(Sharing, MemoryAccount&) = nullptr;
-  /// Needs every fragment of a tile at once, from a coverage whose threads own tiles: triangles
+  /// Needs all fragments of a tile at once, from a coverage whose threads own tiles. Triangles
   /// cannot be drawn in batches or turns.
   bool whole_view = false;
   bool hides = false;  ///< owned regions have bounds(), and pieces may come in any order

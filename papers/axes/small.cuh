@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Prepares the pieces of a batch for several coverages of the family: all of them by their indices,
-// or the small ones apart, which are drawn by the blocks that their boxes touch (paper 1, table 5).
+// Picks the pieces of a batch for several coverages of the family: all by index, or the small ones
+// apart. Small ones are drawn by the blocks that their boxes touch (paper 1, table 5).
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,6 @@ struct HasAreaUpTo {
   RASTRUM_HD bool operator()(std::uint32_t piece) const { return area(piece) <= most_px; }
 };
 
-/// The indices of all pieces.
 template <class Exec>
 [[nodiscard]] auto all_pieces(FamilyFrame<Exec>& frame, std::span<const Piece> pieces) {
   auto which = parallel::make_buffer<std::uint32_t>(frame.exec, pieces.size());
@@ -28,7 +27,7 @@ template <class Exec>
   return which;
 }
 
-/// The same with the small ones first, whose box in the view has at most `most_px` pixels. Counts
+/// All pieces, small ones first: those whose box in the view has at most `most_px` pixels. Counts
 /// "small" and "large".
 template <class Exec>
 [[nodiscard]] auto small_pieces_first(FamilyFrame<Exec>& frame, std::span<const Piece> pieces,
@@ -40,7 +39,7 @@ template <class Exec>
   frame.count("large", parted.elements.size() - parted.first_count);
   return parted;
 }
-/// As `pineda` and `hybrid` part them.
+/// The same with the tuning's limit, for `pineda` and `hybrid`.
 template <class Exec>
 [[nodiscard]] auto small_pieces_first(FamilyFrame<Exec>& frame, std::span<const Piece> pieces) {
   const int asked = frame.tuning.small_px;

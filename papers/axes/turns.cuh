@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Results of expansions in memory of a device, but not more of them at once than there is room for:
-// expand and expand_masked, a turn at a time.
+// expand and expand_masked on a device in turns, so that only as many results are in memory as fit.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +15,7 @@
 
 namespace rastrum::family {
 
-/// Result k of an expansion.
+/// Functor: result k of an expansion.
 template <class Plan, class In, class Get>
 struct ResultOf {
   Plan plan;
@@ -27,7 +26,7 @@ struct ResultOf {
     return get(in[i], k - plan.first(i));
   }
 };
-/// The same of a masked expansion, of whose results each has `parts`: get(in[i], j, part).
+/// The same for a masked expansion whose results have `parts` each: get(in[i], j, part).
 template <class T, class Plan, class In, class Get>
 struct MaskedPartOf {
   Plan plan;
@@ -49,7 +48,7 @@ struct Behind {
   RASTRUM_HD auto operator()(std::size_t k) const { return at(first + k); }
 };
 
-/// Calls f(begin, end) for consecutive parts of [0, n), of at most `most`.
+/// Calls f(begin, end) for consecutive parts of [0, n) of at most `most`.
 template <class F>
 void each_turn(std::size_t n, std::size_t most, F&& f) {
   for (std::size_t begin = 0; begin < n;) {
@@ -60,8 +59,8 @@ void each_turn(std::size_t n, std::size_t most, F&& f) {
   }
 }
 
-/// Calls f(results) with at(k) for all k in [0, n), at most `most` of them at once, as a span of
-/// the device's that lives as long as the call.
+/// Calls f(results) with at(k) for all k in [0, n), at most `most` at once. The results are a span
+/// of device memory that lives as long as the call.
 template <class Exec, class At, class F>
 void tabulate_in_turns(Exec& exec, std::size_t n, const At& at, std::size_t most, F&& f) {
   using T = std::remove_cvref_t<decltype(at(std::size_t{0}))>;
@@ -72,8 +71,8 @@ void tabulate_in_turns(Exec& exec, std::size_t n, const At& at, std::size_t most
   });
 }
 
-/// The same with expand(in, size, get). Returns how many results there were. Work O((n + total)
-/// log n); 8 bytes for each of `in`.
+/// The same with expand(in, size, get). Returns the number of results. Work O((n + total) log n); 8
+/// bytes for each of `in`.
 template <class Exec, class T, class Size, class Get, class F>
 std::uint64_t expand_in_turns(Exec& exec, std::span<const T> in, const Size& size, const Get& get,
                               std::size_t most, F&& f) {

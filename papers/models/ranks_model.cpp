@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Predicts what ranks would send: one renderer plays each of them in turn, and the bytes of its
-// words and fragments are counted as rastrum/ranks/ packs them (docs/ranks_traffic.md). For few
-// ranks the count is compared with that of ranks that are threads. Times are predictions from it,
-// and marked as such.
+// Predicts what ranks would send. One renderer plays each rank in turn, and the bytes of its words
+// and fragments are counted as rastrum/ranks/ packs them (docs/ranks_traffic.md). For few ranks the
+// count is compared with real ranks on threads. Times are predictions from the count and marked so.
 #include <algorithm>
 #include <bit>
 #include <chrono>
@@ -23,12 +22,12 @@
 namespace rastrum::bench {
 namespace {
 
-/// Bytes as they go between ranks.
+/// Bytes on the wire.
 constexpr std::uint64_t kMask = 12, kWord = 8, kFragment = 24, kPlane = 12, kSeen = 20;
-/// Bytes that a letter of two hops has beside its content.
+/// Bytes of a two-hop letter beside its content.
 constexpr std::uint64_t kLetter = 16;
-/// Agreements of a frame with layers, by the way that needs no bands, of ranks on many machines:
-/// four choose whether messages go by two hops.
+/// Agreements per frame with layers, without bands, for ranks on many machines. Four of them choose
+/// whether messages take two hops.
 constexpr double kAgreements = 14;
 
 struct Sent {
@@ -49,14 +48,14 @@ struct Loads {
 std::uint64_t greatest(const std::vector<std::uint64_t>& v) {
   return std::ranges::max(v);
 }
-/// The greatest over the mean of those that have something to give, all ranks counted.
+/// The greatest over the mean of all ranks.
 std::string skew(const std::vector<std::uint64_t>& v) {
   const double sum = std::accumulate(v.begin(), v.end(), 0.0);
   if (sum == 0) return "-";
   return significant(static_cast<double>(greatest(v)) * static_cast<double>(v.size()) / sum);
 }
 
-/// One renderer is each rank after the other.
+/// One renderer that plays the ranks one after the other.
 class Play {
  public:
   Play(const Slabs& slabs, std::size_t n, const Camera& camera, const FrameOptions& frame)
@@ -73,8 +72,8 @@ class Play {
         of_row_(grid_.count()),
         sent_to_(n, n) {
     std::ranges::fill(winner_.pixels(), -1);
-    // Rows of the grid of ranks come one after the other; what passes on for a short last row are
-    // ranks of the row above, so numbers of ranks here are squares.
+    // Plays the grid of ranks row by row. In a grid with a short last row, ranks of the row above
+    // would forward its messages, so this model takes square numbers of ranks only.
     for (std::size_t r = 0; r < n; ++r) {
       const std::size_t row = hops_.via(r, 0);
       if (row == r && r > 0) end_row(r - 1);
@@ -90,7 +89,7 @@ class Play {
   void send(Sent& sent, std::size_t from, std::size_t to, std::uint64_t bytes) {
     if (from == to) return;
     sent.bytes[from] += bytes;
-    // A rank's mail to another is one message, and its blocks come one after the other.
+    // All blocks from one rank to another are one message; they are sent one after the other.
     if (sent_to_[to] == from) return;
     sent_to_[to] = from;
     ++sent.messages[from];
@@ -119,7 +118,7 @@ class Play {
         ++block.words;
         block.fragments += layers;
         block.planes = std::max(block.planes, layers);
-        if (depth_(x, y) <= nearest_(x, y)) return;  // of equal ones the first part
+        if (depth_(x, y) <= nearest_(x, y)) return;  // of equal ones the first part wins
         nearest_(x, y) = depth_(x, y);
         winner_(x, y) = static_cast<std::int32_t>(r);
       });
@@ -143,8 +142,8 @@ class Play {
         [](const Block& b) { return kMask + b.planes * kPlane + b.fragments * kFragment; });
   }
 
-  /// Counts the second hop: for each column, the words that the ranks of the row that ends with
-  /// `last` have merged.
+  /// Counts the second hop: for each column, the words that the row of ranks ending with `last` has
+  /// merged.
   void end_row(std::size_t last) {
     forget();
     std::vector<std::vector<std::uint32_t>> of_rank(sent_to_.size());
@@ -169,11 +168,11 @@ class Play {
   Image<float> depth_, nearest_;
   Image<std::uint32_t> overdraw_;
   Image<std::int32_t> winner_;
-  std::vector<std::uint64_t> of_row_;  ///< masks of blocks, of the row of ranks
-  std::vector<std::size_t> sent_to_;   ///< who has sent to a rank last
+  std::vector<std::uint64_t> of_row_;  ///< masks of the blocks of the row of ranks
+  std::vector<std::size_t> sent_to_;   ///< the rank that sent last to each rank
 };
 
-/// Whether rank r sends in a phase what was counted, beside that phase's agreement.
+/// Whether rank r sent in a phase what was counted, besides the phase's agreement.
 bool sends(const Counted& rank, const char* phase, const Sent& sent, std::size_t r) {
   LocalRanks::Traffic found;
   for (const auto& [name, traffic] : rank.phases)
@@ -183,8 +182,8 @@ bool sends(const Counted& rank, const char* phase, const Sent& sent, std::size_t
          found.messages == sent.messages[r] + rounds;
 }
 
-/// Whether threads of this process have the same words, won pixels and fragments, and send as many
-/// bytes in as many messages.
+/// Whether ranks on threads have the same words, won pixels and fragments, and send as many bytes
+/// in as many messages.
 bool is_right(const Slabs& slabs, std::size_t n, const Loads& loads, const Camera& camera,
               FrameOptions frame) {
   LocalRanks ranks(static_cast<int>(n));
@@ -260,7 +259,8 @@ std::string both(std::string a, const std::string& b) {
   return a.append(" + ").append(b);
 }
 
-/// One exchange, of the rank that has most to send: its messages and its bytes one after the other.
+/// The time of one exchange: that of the rank with the most to send, messages and bytes one after
+/// the other.
 double ms_of(const LogGP& model, const Sent& sent, std::uint64_t more_messages) {
   double most = 0;
   for (std::size_t r = 0; r < sent.bytes.size(); ++r)
@@ -269,7 +269,7 @@ double ms_of(const LogGP& model, const Sent& sent, std::uint64_t more_messages) 
   return most / 1e3;
 }
 
-/// Predicted for `n` ranks by one set of constants.
+/// The prediction for `n` ranks by one set of constants.
 struct Predicted {
   Predicted(const LogGP& model, const Loads& loads, std::size_t n, std::uint64_t pixels) {
     if (n == 1) return;
@@ -278,7 +278,7 @@ struct Predicted {
     sparse = ms_of(model, loads.direct, others);
     hops = ms_of(model, loads.first, peers) + ms_of(model, loads.second, peers);
     layers = ms_of(model, loads.layers, others);
-    // Each byte twice, each letter with its address.
+    // Each byte is sent twice, and each letter has an address.
     Sent letters = loads.layers;
     for (std::size_t r = 0; r < n; ++r) {
       letters.bytes[r] = 2 * (letters.bytes[r] + letters.messages[r] * kLetter);
@@ -297,8 +297,8 @@ struct Predicted {
   }
 };
 
-/// Constants of a network as makers print them: 2 µs from rank to rank, a message begun each half
-/// a microsecond, 20 GB/s.
+/// Typical vendor figures of a network: 2 µs latency, a new message every half microsecond, 20
+/// GB/s.
 constexpr LogGP kNetwork{2, 0.5, 20e3};
 
 }  // namespace

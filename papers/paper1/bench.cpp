@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench paper1-table1 … paper1-table6`: the tables of paper 1, section 4.2, beside ours.
-// Every frame is depth-shaded as there, grey = depth³, through the programmable form.
+// As there, every frame is depth-shaded, grey = depth³, by a programmable shader.
 #include <vector>
 
 #include <bench/contest.hpp>
@@ -18,15 +18,13 @@ namespace {
 using paper1::kModels;
 
 /// The paper's rasterizers in the order of its tables: immediate scanline, immediate, tiled and
-/// hybrid Pineda. Its immediate ones resolve depth with the 64-bit visibility buffer (section
-/// 3.2.3).
+/// hybrid Pineda. The immediate ones use the 64-bit visibility buffer (section 3.2.3).
 constexpr std::array kRasterizers{"scanline", "pineda", "tiled", "hybrid"};
 
-/// No bounding box of a triangle that is drawn is smaller, so this leaves the small stage idle
-/// but for triangles of a pixel (0 stands for the default).
+/// The smallest limit, since 0 is the default: only triangles of one pixel take the small stage.
 constexpr int kAlmostNoSmallStage_px = 1;
 
-/// The stand-ins of the columns, made when first asked for.
+/// The stand-ins of the columns, made on first use.
 class Meshes {
  public:
   explicit Meshes(const TableOptions& options) : options_(options), meshes_(kModels.size()) {
@@ -69,8 +67,8 @@ struct Filled {
   bool right;
 };
 
-/// Runs what one table needs: parses the options, hands them with the meshes to `fill`, publishes
-/// what that returns; a plot of bars without `x_title`.
+/// Parses the options, calls `fill` with them and the meshes, and publishes the table that it
+/// returns. Plots bars if `x_title` is null.
 template <class Fill>
 int table(const char* name, const char* title, const char* x_title,
           std::span<const std::string_view> arguments, Fill&& fill) {
@@ -91,7 +89,6 @@ Subject subject_of(const Mesh& mesh, int image) {
   return {mesh.view(), whole_view(mesh), image, image};
 }
 
-/// A table of the models that has the paper's rows.
 template <class Rows>
 Comparison by_model(const TableOptions& options, const char* caption, const char* row_title,
                     const Rows& published) {
@@ -100,8 +97,8 @@ Comparison by_model(const TableOptions& options, const char* caption, const char
   return c;
 }
 
-/// The entrants draw each model `steps` times, step s of them as frame_of(mesh, s) says. Entrant
-/// i's figures go into row `first` + `steps` · i + s. Whether all pictures are right.
+/// Each entrant draws each model `steps` times, in step s the frame frame_of(mesh, s). Entrant i's
+/// figures go into row `first` + `steps` · i + s. Returns whether all pictures are right.
 template <class Frame>
 bool race_models(const TableOptions& options, Meshes& meshes, std::span<const Entrant> entrants,
                  Comparison& c, std::size_t first, std::size_t steps, bool memory,
@@ -132,7 +129,7 @@ std::vector<Entrant> rasterizers(const TableOptions& options) {
   return entrants;
 }
 
-/// A bin × fine tile table of one rasterizer on the Dragon (tables 4 and 6).
+/// The bin × fine tile table of one rasterizer on the Dragon (tables 4 and 6).
 template <class Rows>
 Filled tile_sizes(const TableOptions& options, Meshes& meshes, const Rows& published,
                   const char* rasterizer, int small_px, const char* caption) {
@@ -152,7 +149,7 @@ Filled tile_sizes(const TableOptions& options, Meshes& meshes, const Rows& publi
   }
   const Subject subject = subject_of(meshes[3], options.size(paper1::kImage));
   progress("Dragon");
-  // Skips what the paper could not run.
+  // Leaves out the sizes that the paper could not run.
   std::vector<Entrant> asked;
   for (std::size_t i = 0; i < entrants.size(); ++i)
     if (c.rows[i / 3].published[i % 3].value > 0) asked.push_back(entrants[i]);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The hierarchy of paper 1 (section 3.1.3) as functors, for host and device: a piece to the bins
-// that its box touches, a bin to the tiles that an edge test leaves.
+// The hierarchy of paper 1 (section 3.1.3) as functors for host and device: a piece to the bins
+// that its box touches, a bin to the tiles that pass an edge test.
 //
-// Deviation: a tile is tested by the largest value of each edge function over the samples of tile
-// and box, in exact integers.
+// Deviation: the test takes the largest value of each edge function over the samples in tile and
+// box, in exact integers.
 #pragma once
 
 #include <bit>
@@ -23,14 +23,14 @@ struct BinPair {
   std::uint32_t piece, bin;
 };
 
-/// Sizes of bins and tiles, powers of two, so that divisions by them are shifts. The defaults are
-/// paper 1's.
+/// Sizes of bins and tiles: powers of two, so that divisions are shifts. The defaults are paper
+/// 1's.
 struct BinSizes {
   int bin_log2 = 5, tile_log2 = 3;
 
   [[nodiscard]] RASTRUM_HD int bin_px() const { return 1 << bin_log2; }
   [[nodiscard]] RASTRUM_HD int tile_px() const { return 1 << tile_log2; }
-  /// How many tiles lie side by side in a bin; as many lie one below the other.
+  /// Tiles side by side in a bin, and also one below the other.
   [[nodiscard]] RASTRUM_HD int tiles_across() const { return 1 << (bin_log2 - tile_log2); }
   [[nodiscard]] RASTRUM_HD int tiles_per_bin() const { return tiles_across() * tiles_across(); }
   /// Tile t of a bin, numbered row by row.
@@ -43,8 +43,7 @@ struct BinSizes {
 inline constexpr BinSizes kPaper2Sizes{6, 3};
 inline constexpr int kMaxBinPx = 128, kMaxTilesAcross = 16;
 
-/// The sizes that a tuning asks for, which must be known to be good; `paper` where it asks for
-/// none.
+/// The sizes that a valid tuning asks for; `paper` where it asks for none.
 [[nodiscard]] inline BinSizes sizes_of(const Tuning& tuning, BinSizes paper) {
   const auto log2_of = [](int px) { return std::countr_zero(static_cast<unsigned>(px)); };
   if (tuning.bin_px != 0) paper.bin_log2 = log2_of(tuning.bin_px);
@@ -57,12 +56,12 @@ struct Tiles {
   const Piece* pieces;
   BinSizes sizes;
   TileGrid bins, tiles;
-  BlockOrder order;  ///< in which bins and tiles are walked
+  BlockOrder order;  ///< of the walk over bins and tiles
 
   Tiles(BinSizes s, const Piece* p, Rect view, BlockOrder o)
       : pieces(p), sizes(s), bins{view, s.bin_px()}, tiles{view, s.tile_px()}, order(o) {}
 
-  /// The bins that the box of a piece touches, as columns and rows of the view's.
+  /// The bins that the box of a piece touches, as columns and rows of the view's grid.
   [[nodiscard]] RASTRUM_HD Rect bins_of(std::uint32_t piece) const {
     const Rect view = bins.view;
     const Rect box = piece_bounds(pieces[piece], view);
@@ -75,7 +74,6 @@ struct Tiles {
     const Rect r = bins_of(piece);
     return static_cast<std::size_t>(r.x1 - r.x0) * static_cast<std::size_t>(r.y1 - r.y0);
   }
-  /// Bin j of the piece.
   [[nodiscard]] RASTRUM_HD BinPair bin(std::uint32_t piece, std::size_t j) const {
     const Rect r = bins_of(piece);
     const Cell cell = cell_at(order, j, r.x1 - r.x0, r.y1 - r.y0);
@@ -83,7 +81,7 @@ struct Tiles {
             static_cast<std::uint32_t>((r.y0 + cell.row) * bins.columns() + r.x0 + cell.column)};
   }
 
-  /// Tile j of a bin in order, cut to the view; empty where it lies outside.
+  /// The j-th tile of a bin in walking order, cut to the view; empty if it lies outside.
   [[nodiscard]] RASTRUM_HD Rect tile(std::uint32_t bin, std::size_t j) const {
     const Rect b = bins.rect(bin);
     const int px = sizes.tile_px(), across = sizes.tiles_across();
@@ -98,7 +96,6 @@ struct Tiles {
     const Rect box = piece_bounds(piece, tile(pair.bin, j));
     return !box.empty() && may_touch(edges_of(piece), box);
   }
-  /// Number of a tile in the view.
   [[nodiscard]] RASTRUM_HD std::uint32_t tile_id(Rect tile) const {
     const Rect view = tiles.view;
     const int by = sizes.tile_log2;
@@ -107,7 +104,7 @@ struct Tiles {
   }
 };
 
-/// Bin expansion: how many there are …
+/// Bin expansion: how many bins a piece has …
 struct BinCount {
   Tiles tiles;
   RASTRUM_HD std::size_t operator()(std::uint32_t piece) const { return tiles.bin_count(piece); }
@@ -119,14 +116,14 @@ struct MakeBin {
     return tiles.bin(piece, j);
   }
 };
-/// Tile expansion, masked: how many a bin has …
+/// Tile expansion, masked: how many tiles a bin has …
 struct TileCount {
   Tiles tiles;
   RASTRUM_HD std::size_t operator()(const BinPair&) const {
     return static_cast<std::size_t>(tiles.sizes.tiles_per_bin());
   }
 };
-/// … and which of them are tiles of the piece.
+/// … and which of them the piece may touch.
 struct TouchesTile {
   Tiles tiles;
   RASTRUM_HD bool operator()(const BinPair& pair, std::size_t j) const {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// hybrid on a device: small pieces at once, by the blocks of their boxes or by rows, the others
-// sorted by tile (paper 1, sections 3.3 and 4.2).
+// hybrid on a device (hybrid.hpp; paper 1, sections 3.3 and 4.2).
 #pragma once
 
 #include <span>
@@ -10,7 +9,7 @@
 
 namespace rastrum::family {
 
-/// Work: that of `pineda` for small pieces (or of `scanline`), of `tiled` for the others. Counters:
+/// Work: `pineda`'s (or `scanline`'s) for small pieces, `tiled`'s for the others. Counters:
 /// "small", "large", "bins", "tile pairs" (and "rows", "runs").
 template <class Exec>
 void draw_hybrid(FamilyFrame<Exec>& frame, std::span<const Piece> pieces) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// pineda on a device: small pieces by the blocks of their boxes, the others through bins and tiles,
-// all at once onto the frame (paper 1, section 3.1.3).
+// pineda on a device (pineda.hpp; paper 1, section 3.1.3).
 #pragma once
 
 #include <span>

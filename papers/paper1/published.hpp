@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Paper 1: S. Siddique, "Tile-based software rasterization in Futhark", 2026, section 4.2.
-// Laptop GPU (Quadro M2000M, 4 GB) unless a line says otherwise; one depth-shaded frame of 1024 ×
-// 1024; MB is the peak that `futhark profile` reports.
+// Paper 1: S. Siddique, "Tile-based software rasterization in Futhark", 2026, section 4.2. Laptop
+// GPU (Quadro M2000M, 4 GB) unless a line says otherwise; one depth-shaded frame of 1024 × 1024. MB
+// is the peak that `futhark profile` reports.
 #pragma once
 
 #include <bench/tables/published.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The two expansions of `scanline` as functors, for host and device: a piece to its rows, a row to
+// The two expansions of `scanline` as functors for host and device: a piece to its rows, a row to
 // the blocks that it crosses (paper 5, section 3.1; paper 1, section 3.1).
 #pragma once
 
@@ -12,13 +12,13 @@
 
 namespace rastrum::family {
 
-/// The pixels [begin, end) of row y that a piece covers; possibly none.
+/// The pixels [begin, end) of row y that a piece covers; may be empty.
 struct PieceRow {
   std::uint32_t piece;
   std::uint16_t y, begin, end;
 };
 
-/// Row expansion: how many there are …
+/// Row expansion: how many rows a piece has …
 struct RowCount {
   const Piece* pieces;
   Rect view;
@@ -40,14 +40,14 @@ struct MakeRow {
   }
 };
 
-/// Column expansion: the blocks that a row crosses …
+/// Column expansion: how many blocks a row crosses …
 struct RunCount {
   RASTRUM_HD std::size_t operator()(const PieceRow& row) const {
     if (row.begin == row.end) return 0;
     return static_cast<std::size_t>((row.end - 1) / kBlockSize - row.begin / kBlockSize + 1);
   }
 };
-/// … and its part in block j of them.
+/// … and its part in the j-th of them.
 struct MakeRun {
   RASTRUM_HD Block operator()(const PieceRow& row, std::size_t j) const {
     const int bx = row.begin / kBlockSize + static_cast<int>(j);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// scanline on a device: pieces are expanded to rows, rows to the blocks that they cross (paper 5,
-// section 3.1, algorithm 3a; paper 1, section 3.1), by the functors of the host's
-// (rows.hpp); a thread a row, then a thread a run.
+// scanline on a device (scanline.hpp), with the host's functors (rows.hpp). One thread makes a row
+// or a run.
 #pragma once
 
 #include <cstdint>

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// scanline: a triangle is expanded to its rows, a row to its columns (paper 5, section 3.1,
+// scanline: expands a triangle to its rows and a row to its columns (paper 5, section 3.1,
 // algorithm 3a; paper 1, section 3.1, after Henriksen et al., 2019).
 //
-// Deviations. The columns of a row are cut into runs, each the part of a row inside an 8 × 8 block,
-// since blocks are what a region resolves; runs are handed on without being written, where paper 5
-// stores every fragment. A row's interval comes from exact integer edges under the top-left rule
-// (`row_span`), not from rounded slopes.
+// Deviations. A row is cut into runs, one for each 8 × 8 block that it crosses, since a region
+// resolves blocks. Runs are handed on without being stored; paper 5 stores every fragment. A row's
+// interval comes from exact integer edges under the top-left rule (`row_span`), not from rounded
+// slopes.
 #pragma once
 
 #include <cstdint>

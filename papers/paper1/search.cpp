@@ -8,8 +8,8 @@
 namespace rastrum::family {
 namespace {
 
-/// 0 for a surface at depth 0 and for none alike: the second pass, which writes whole keys, tells
-/// them apart.
+/// Is 0 both for a surface at depth 0 and for no surface. The second pass writes whole keys and so
+/// tells them apart.
 std::uint32_t depth_of_key(std::uint64_t key) {
   return static_cast<std::uint32_t>(key >> kIdBits);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// search on a device: a first pass over a turn's blocks raises the depths, with 32-bit atomics, a
-// second one the keys of the fragments that have the depth of their pixel (paper 1, section
-// 3.2.2). Between turns the depths are those of the keys, and are kept.
+// search on a device: a first pass over a turn's blocks raises the depths with 32-bit atomics. A
+// second pass raises the keys of the fragments that have their pixel's depth (paper 1, section
+// 3.2.2). Between turns the depths equal those of the keys, so they are kept.
 #pragma once
 
 #include <atomic>
@@ -13,7 +13,7 @@
 
 namespace rastrum::family {
 
-/// value = max(value, candidate), by many threads at once.
+/// value = max(value, candidate), from many threads at once.
 RASTRUM_HD inline void raise_depth(std::uint32_t& value, std::uint32_t candidate) noexcept {
 #if defined(__CUDA_ARCH__)
   if (*static_cast<const volatile std::uint32_t*>(&value) < candidate) atomicMax(&value, candidate);
@@ -30,8 +30,8 @@ RASTRUM_HD inline void raise_depth(std::uint32_t& value, std::uint32_t candidate
   return static_cast<std::uint32_t>(key >> kIdBits);
 }
 
-/// 0 for a surface at depth 0 and for none alike: the second pass, which raises whole keys, tells
-/// them apart.
+/// Is 0 both for a surface at depth 0 and for no surface. The second pass raises whole keys and so
+/// tells them apart.
 struct DepthOfKey {
   const std::uint64_t* keys;
   RASTRUM_HD std::uint32_t operator()(std::size_t i) const { return depth_bits(keys[i]); }
@@ -58,8 +58,8 @@ struct RaiseKeyOfDepth {
   }
 };
 
-/// Work O(fragments), twice; 4 bytes a pixel. Counters: "fragments compared", of the second pass,
-/// and "depth matches" among them, which grow with the number of turns.
+/// Work O(fragments), twice; 4 bytes a pixel. Counters: "fragments compared" (second pass) and
+/// "depth matches" among them. Both grow with the number of turns.
 template <class Exec>
 class SearchOnDevice final : public DeviceVisibility<Exec> {
  public:

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// search: a first enumeration finds the maximum of the depth, a second one the smallest id that has
-// it (paper 1, section 3.2.2: what 32-bit atomics can do).
+// search: a first enumeration finds the greatest depth, a second one the smallest id at that depth
+// (paper 1, section 3.2.2: what 32-bit atomics can do).
 //
-// Deviations. The paper keeps all fragments between its two passes and lets the last of equal ones
-// win; here nothing is kept, the second pass enumerates again, and equal depths go to the smaller
-// id as everywhere.
+// Deviations. The paper keeps all fragments between its two passes; here the second pass enumerates
+// again. At equal depths the smaller id wins, as everywhere here; in the paper the last one wins.
 #pragma once
 
 #include <memory>
@@ -13,8 +12,8 @@
 
 namespace rastrum::family {
 
-/// Work O(fragments), twice; 4 bytes a pixel of the region beside the surface. Counters:
-/// "fragments compared", of the second pass, and "depth matches" among them.
+/// Work O(fragments), twice; 4 bytes a pixel of the region beside the surface. Counters: "fragments
+/// compared" (second pass) and "depth matches" among them.
 [[nodiscard]] std::unique_ptr<Region> make_search(Sharing sharing, MemoryAccount& memory);
 
 }  // namespace rastrum::family

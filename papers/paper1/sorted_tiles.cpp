@@ -14,10 +14,10 @@ namespace rastrum::family {
 namespace {
 
 /// Pieces sorted by tile: each tile has a segment, in order of submission. Memory grows with the
-/// pairs, not with the tiles that there could be.
+/// pairs, not with the number of tiles.
 class TileSegments {
  public:
-  /// Sorts by the few bits that `tile_count` tiles have. Work O(pairs), 20 bytes a pair.
+  /// Sorts by the bits that `tile_count` needs. Work O(pairs), 20 bytes a pair.
   TileSegments(parallel::Threads& exec, parallel::Buffer<std::uint32_t> tile_ids,
                parallel::Buffer<std::uint32_t> pieces, std::size_t tile_count)
       : pieces_(std::move(pieces)),
@@ -32,7 +32,7 @@ class TileSegments {
     begins_ = std::move(segments.values);
   }
 
-  /// The pieces of a tile. O(log tiles that have any).
+  /// The pieces of a tile. O(log tiles that have pieces).
   [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t tile) const {
     const auto found = std::lower_bound(tiles_.begin(), tiles_.end(), tile);
     if (found == tiles_.end() || *found != tile) return {};
@@ -43,8 +43,8 @@ class TileSegments {
 
  private:
   parallel::Buffer<std::uint32_t> pieces_;  ///< sorted by tile
-  parallel::Buffer<std::uint32_t> tiles_;   ///< those that have any, ascending
-  parallel::Buffer<std::size_t> begins_;    ///< of their segments
+  parallel::Buffer<std::uint32_t> tiles_;   ///< the tiles that have pieces, ascending
+  parallel::Buffer<std::size_t> begins_;    ///< of the tiles' segments
 };
 
 /// Writes the results of a masked expansion of bins as pairs and sorts them.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The sort in the middle of `tiled` and `hybrid` (paper 1, section 3.3): (tile, piece) pairs sorted
-// by tile, so that a tile's pieces are a segment and one thread can own it.
+// The sort in `tiled` and `hybrid` (paper 1, section 3.3): sorts (tile, piece) pairs by tile, so
+// that a tile's pieces are a segment and one thread can own the tile.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace rastrum::family {
 
-/// Draws pieces tile by tile. Keys are kept in blocks, so the four tiles of 4 px in a block have
-/// one owner.
+/// Draws pieces tile by tile. Surfaces are made of blocks, so one thread owns the four tiles of 4
+/// px in a block.
 void draw_sorted_tiles(Frame& frame, BinSizes sizes, const Piece* pieces,
                        std::span<const std::uint32_t> which);
 

@@ -2,9 +2,8 @@
 // tiled on a device: pieces are expanded to bins and tiles, and the (tile, piece) pairs are sorted
 // by tile (paper 1, section 3.3).
 //
-// Deviation: nobody owns a tile here, for a turn's blocks lie in memory whatever visibility comes
-// next. The sort still pays on a device: threads beside each other draw the same tile, and find its
-// keys in the cache.
+// Deviation: no thread owns a tile, since a turn's blocks are in memory for any visibility. The
+// sort still pays: neighbouring threads draw the same tile and find its keys in the cache.
 #pragma once
 
 #include <bit>
@@ -47,7 +46,7 @@ template <class Exec>
 void draw_sorted_tiles(FamilyFrame<Exec>& frame, std::span<const Piece> pieces,
                        std::span<const std::uint32_t> which) {
   using parallel::view_of;
-  // Its tile and its piece, twice while they are sorted, and a share of what sorts.
+  // Tile and piece, twice while they are sorted, and a share of the sort's scratch.
   constexpr std::uint64_t kPairBytes = 20;
   const Tiles tiles = tiles_of_frame(frame, pieces);
   const std::size_t parts = blocks_per_tile(tiles.sizes);

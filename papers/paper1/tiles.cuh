@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The hierarchy of bins and tiles (bins.hpp) on a device: pieces are expanded to bins,
-// bins by expand_masked to tiles.
+// The hierarchy of bins and tiles (bins.hpp) on a device: expands pieces to bins and, by
+// expand_masked, bins to tiles.
 #pragma once
 
 #include <cstddef>
@@ -13,20 +13,20 @@
 
 namespace rastrum::family {
 
-/// In the sizes that the tuning asks for, which the host has checked, else `paper`.
+/// The sizes of the tuning, which the host has checked, or else `paper`.
 template <class Exec>
 [[nodiscard]] Tiles tiles_of_frame(const FamilyFrame<Exec>& frame, std::span<const Piece> pieces,
                                    BinSizes paper = {}) {
   return {sizes_of(frame.tuning, paper), pieces.data(), frame.surface.view, frame.tuning.order};
 }
 
-/// Blocks that a tile has a part in.
+/// The number of blocks that a tile touches.
 [[nodiscard]] RASTRUM_HD inline std::size_t blocks_per_tile(BinSizes sizes) {
   const int across = (sizes.tile_px() + kBlockSize - 1) / kBlockSize;
   return static_cast<std::size_t>(across) * static_cast<std::size_t>(across);
 }
-/// The samples that a piece covers of block `part` of a tile, which the view may have cut; possibly
-/// none.
+/// The samples of block `part` of a tile that a piece covers; may be none. The view may have cut
+/// the tile.
 [[nodiscard]] RASTRUM_HD inline Block block_of_tile(const Tiles& tiles, std::uint32_t piece,
                                                     Rect tile, std::size_t part) {
   const auto across =
@@ -37,8 +37,8 @@ template <class Exec>
           cover_box(edges_of(tiles.pieces[piece]), tile, bx, by)};
 }
 
-/// Calls f(bins, tiles) with the bins of the pieces and the masked expansion of their tiles, a turn
-/// at a time; `tile_bytes` is what f needs for a tile. Counts "bins" and "tile pairs".
+/// Calls f(bins, tiles) with the bins of the pieces and the masked expansion of their tiles, turn
+/// by turn. f needs `tile_bytes` for a tile. Counts "bins" and "tile pairs".
 template <class Exec, class F>
 void each_turn_of_bins(FamilyFrame<Exec>& frame, const Tiles& tiles,
                        std::span<const std::uint32_t> which, std::uint64_t tile_bytes, F&& f) {

@@ -15,17 +15,16 @@
 
 namespace rastrum::family {
 
-/// sizes_of, for the rasterizer `name`. Throws Error{invalid_argument} that says which there are
-/// for others than Tuning names, and for tiles below `least_tile_px`.
+/// sizes_of for the rasterizer `name`. Throws Error{invalid_argument}, which lists the valid sizes,
+/// for sizes that Tuning does not allow and for tiles below `least_tile_px`.
 [[nodiscard]] BinSizes checked_sizes(std::string_view name, const Tuning& tuning, BinSizes paper,
                                      int least_tile_px);
 
-/// Hands f(bins, tiles) the bins of the pieces and the masked expansion of their tiles, a turn at a
-/// time; `tile_bytes` is what f needs for a tile. Counts "bins" and "tile pairs".
+/// Calls f(bins, tiles) with the bins of the pieces and the masked expansion of their tiles, turn
+/// by turn. f needs `tile_bytes` for a tile. Counts "bins" and "tile pairs".
 template <class F>
 void expand_tiles(Frame& frame, const Tiles& tiles, std::span<const std::uint32_t> which,
                   std::size_t tiles_per_chunk, std::uint64_t tile_bytes, F&& f) {
-  // A bin's tiles are as many masks as they need.
   constexpr int kBits = 64;
   const auto per_bin = static_cast<std::uint64_t>(tiles.sizes.tiles_per_bin());
   // The bin, its place among the masks, its masks, and all tiles that it may have.

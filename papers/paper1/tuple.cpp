@@ -12,8 +12,8 @@
 namespace rastrum::family {
 namespace {
 
-/// A byte of the caller's as a lock. Held for the maxima of one block, so waiters spin; they let
-/// others run, for the holder may be waiting for their core.
+/// Uses a caller's byte as a lock. It is held only for the maxima of one block, so waiters spin.
+/// They yield, because the holder may need their core.
 class BlockLock {
  public:
   explicit BlockLock(std::uint8_t& byte) : held_(byte) {
@@ -28,7 +28,7 @@ class BlockLock {
   std::atomic_ref<std::uint8_t> held_;
 };
 
-/// A thread's, zeroed for each use of the region.
+/// A thread's scratch, zeroed for each use of the region.
 struct ScratchOfUse {
   ShaderScratch shader;
   std::uint64_t zeroed_for = 0;
@@ -107,7 +107,7 @@ class TupleRegion final : public Region {
   }
 
   RegionContext context_;
-  Shading shading_;  ///< none: no colour is wanted
+  Shading shading_;  ///< empty if no colour is wanted
   SurfaceView surface_;
   PixelNumbers pixels_;
   ScratchBuffer<std::uint8_t> locks_;

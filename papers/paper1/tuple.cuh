@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// tuple on a device: every fragment is shaded, and (key, colour) pairs are reduced by their
-// pixels, the greater key with its colour (paper 1, section 3.2.1). No machine changes 24 bytes at
-// once, so the fragments of a pixel are brought together by a sort.
+// tuple on a device: every fragment is shaded, and (key, colour) pairs are reduced by pixel, the
+// greater key with its colour (paper 1, section 3.2.1). No atomic operation changes 24 bytes, so a
+// sort brings the fragments of a pixel together.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ struct Seen {
   std::uint64_t key;
   Vec4 color;
 };
-/// Equal keys are the same fragment's, with one colour.
+/// Equal keys belong to the same fragment, which has one colour.
 struct GreaterKey {
   RASTRUM_HD Seen operator()(const Seen& a, const Seen& b) const { return a.key < b.key ? b : a; }
 };
@@ -42,7 +42,7 @@ struct SeenAt {
     return {key[i], color == nullptr ? Vec4{} : color[i]};
   }
 };
-/// A segment has its pixel for itself.
+/// No other segment has this pixel.
 struct RaiseToSeen {
   const std::uint32_t* element;
   const Seen* nearest;
@@ -57,7 +57,7 @@ struct RaiseToSeen {
 };
 
 /// Work O(fragments) shading and O(fragments · digits); 80 bytes a fragment. Counter: "fragments
-/// shaded", none where the frame wants no colours or the host shades what it sees.
+/// shaded"; 0 if the frame wants no colours or the host shades what is visible.
 template <class Exec>
 class TupleOnDevice final : public DeviceVisibility<Exec> {
  public:
@@ -65,8 +65,8 @@ class TupleOnDevice final : public DeviceVisibility<Exec> {
   void resolve(FamilyFrame<Exec>& frame, std::span<const Piece> pieces,
                std::span<const Block> blocks, std::uint64_t) override {
     using parallel::view_of;
-    // Its key and colour, its element and index twice while they are sorted, its segment's, and a
-    // share of what sorts and reduces.
+    // Key and colour, element and index twice while they are sorted, the segment's values, and a
+    // share of the scratch of sort and reduction.
     constexpr std::uint64_t kFragmentBytes = 8 + sizeof(Vec4) + 2 * 8 + 4 + sizeof(Seen) + 8;
     const FragmentColors& shading = frame.shading;
     each_written_part(frame, pieces, blocks, kFragmentBytes, [&](auto& element, auto& key) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// tuple: (key, colour) of every fragment, the greater key wins with its colour (paper 1, section
-// 3.2.1). Every fragment is shaded at once; where threads share the region a lock a block guards
-// the pair, which no machine can change at once.
+// tuple: keeps (key, colour) of every fragment; the greater key wins with its colour (paper 1,
+// section 3.2.1). Every fragment is shaded at once. If threads share the region, one lock per block
+// guards the pairs, which are too large for an atomic operation.
 #pragma once
 
 #include <memory>
@@ -10,8 +10,8 @@
 
 namespace rastrum::family {
 
-/// Work O(fragments) maxima and O(fragments) shading; colours of 16 bytes a pixel in the surface,
-/// for a shared region a byte a block for the lock. Counter: "fragments shaded".
+/// Work O(fragments) maxima and O(fragments) shading; 16 bytes of colour a pixel, and a byte of
+/// lock a block of a shared region. Counter: "fragments shaded".
 [[nodiscard]] std::unique_ptr<Region> make_tuple_region(Sharing sharing, MemoryAccount& memory);
 
 }  // namespace rastrum::family

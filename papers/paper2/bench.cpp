@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench paper2`: large triangles by both schedules of `binned` beside paper 2, section 3,
-// and how evenly 64 simulated workers would be loaded (the project's goal: at most 1.1 × the mean).
+// and the balance of load on 64 simulated workers (the project's goal: at most 1.1 × the mean).
 #include <vector>
 
 #include <bench/contest.hpp>
@@ -18,7 +18,6 @@ namespace {
 
 constexpr int kFrameWidth = 1920, kFrameHeight = 1080;
 constexpr double kEvenLoad = 1.1;
-/// The counters of the load that the rasterizer simulates.
 constexpr std::string_view kMost = "most loaded of 64 workers", kWork = "work of 64 workers";
 
 struct RandomTriangles {
@@ -27,17 +26,17 @@ struct RandomTriangles {
   double least, most;  ///< fragments of a triangle
   int published;       ///< the paper's column, or −1
 };
-/// Paper 2 names ranges only; 400 is ours. Very large is up to half the picture.
+/// Paper 2 names only ranges; 400 is our addition. Very large is up to half the picture.
 constexpr std::array<RandomTriangles, 4> kScenes{
     {{"8 large", 8, paper2::kLargeFragments, paper2::kVeryLargeFragments, 0},
      {"40 large", 40, paper2::kLargeFragments, paper2::kVeryLargeFragments, 1},
      {"400 large", 400, paper2::kLargeFragments, paper2::kVeryLargeFragments, -1},
      {"40 very large", 40, paper2::kVeryLargeFragments, 1e9, 2}}};
 
-/// Where the schedules' figures go among the paper's rows.
+/// The rows of the paper's table that the schedules' figures go into.
 enum PaperRow : std::size_t { kPersistent, kStoreBins, kRasterizeBins, kBoth };
 
-/// A stage of the frame as a figure of its own.
+/// The time of one stage of the frame.
 Measured stage(const Result& result, std::string_view name) {
   Measured m;
   m.not_run = result.not_run;

@@ -25,18 +25,18 @@ namespace {
 
 constexpr std::size_t kBatch = 32;
 
-/// Entries of a round where no memory limit asks for fewer: 24 MiB by the paper's sizes, and 2,000
+/// Entries of a round unless a memory limit asks for fewer: 24 MiB at the paper's sizes, or 2,000
 /// triangles that fill 1920 × 1080.
 constexpr std::size_t kQueueEntries = std::size_t{1} << 20;
 
-/// Tiles of a chunk at most: some tens of microseconds. Fewer where there would not be a chunk for
-/// each of kWorkers.
+/// The most tiles of a chunk, some tens of microseconds. Chunks are smaller if there would be fewer
+/// than kWorkers of them.
 constexpr std::size_t kTilesPerChunk = 256;
 
-/// The load is told for this many workers, whatever threads there are.
+/// Counters report the load of this many workers, whatever the number of threads.
 constexpr std::size_t kWorkers = 64;
 
-/// The work that each of kWorkers would have between two barriers.
+/// The work of each of kWorkers between two barriers.
 class Load {
  public:
   void add(std::size_t turn, std::uint64_t work) { of_[turn % kWorkers] += work; }
@@ -49,7 +49,6 @@ class Load {
   std::array<std::uint64_t, kWorkers> of_{};
 };
 
-/// The counters.
 struct Work {
   std::uint64_t batches = 0, small = 0, large = 0, bins = 0, tile_pairs = 0;
   std::uint64_t most_loaded = 0, total = 0;
@@ -69,14 +68,13 @@ struct Work {
   }
 };
 
-/// The work of a batch.
 struct Batch {
   std::uint32_t small = 0, large = 0;
-  std::uint32_t blocks = 0;  ///< of the boxes of the small ones
-  std::uint32_t bins = 0;    ///< that the boxes of the large ones touch
+  std::uint32_t blocks = 0;  ///< touched by the boxes of the small ones
+  std::uint32_t bins = 0;    ///< touched by the boxes of the large ones
 };
 
-/// Some of a bin's tiles; a bin has as many masks as its tiles need.
+/// The mask of up to 64 tiles of a bin, which has as many masks as it needs.
 using TileMask = parallel::Mask<64>;
 constexpr int kMaxMasks = kMaxTilesAcross * kMaxTilesAcross / TileMask::size();
 
@@ -97,7 +95,7 @@ struct OwnedBin {
       : waiting(kBatch, memory), drawn(parallel::ArenaAllocator<std::uint32_t>(memory)) {}
 
   parallel::WorkQueue<std::uint32_t> waiting;  ///< pieces
-  parallel::Buffer<std::uint32_t> drawn;       ///< in the order of the first pass, for others
+  parallel::Buffer<std::uint32_t> drawn;       ///< in the order of the first pass, for later passes
   std::uint64_t tiles = 0;
 };
 
@@ -128,8 +126,8 @@ class Binned final : public Coverage {
       work_.large += b.large;
     }
 
-    // Each batch's place in the queue. A round's entries are those of a run of whole batches; those
-    // of a single one, at most 32 a bin, take less than the view's keys.
+    // Finds each batch's place in the queue. A round has the entries of a run of whole batches. A
+    // single batch has at most 32 entries a bin, less memory than the view's keys.
     const std::size_t entry_bytes =
         sizeof(BinPair) + masks_per_entry_ * (sizeof(TileMask) + sizeof(std::size_t));
     const std::size_t most =
@@ -178,7 +176,7 @@ class Binned final : public Coverage {
     const int x = box.x0 / size, y = box.y0 / size;
     return {x, y, (box.x1 - 1) / size + 1 - x, (box.y1 - 1) / size + 1 - y};
   }
-  /// Calls f(x, y) in the tuning's order.
+  /// Calls f(x, y) in the order of the tuning.
   template <class F>
   void each_cell(const Cells& cells, const F& f) const {
     for (std::uint32_t i = 0; i < cells.count(); ++i) {
@@ -186,7 +184,7 @@ class Binned final : public Coverage {
       f(cells.x + cell.column, cells.y + cell.row);
     }
   }
-  /// Bins are the view's, not the image's.
+  /// Bins start at the view's corner, not at the image's.
   [[nodiscard]] Cells bins_of(Rect box) const {
     const int x0 = frame_->view.x0, y0 = frame_->view.y0;
     return touched({box.x0 - x0, box.y0 - y0, box.x1 - x0, box.y1 - y0}, sizes_.bin_px());
@@ -207,7 +205,7 @@ class Binned final : public Coverage {
     return b;
   }
 
-  /// Draws the small pieces of a batch and hands the bins of the large ones to store(piece, bin).
+  /// Draws the small pieces of a batch and calls store(piece, bin) for the bins of the large ones.
   template <class Store>
   void draw_batch(std::size_t batch, Emitter& emitter, const Store& store) const {
     emitter.use(pieces_.data());
@@ -263,7 +261,7 @@ class Binned final : public Coverage {
           count.fetch_add(found, std::memory_order_relaxed);
         },
         kBatch);
-    // As many chunks for each worker as need be, of equal size.
+    // Each worker gets the same number of chunks, all of equal size.
     const std::size_t most = kWorkers * kTilesPerChunk, turns = (count + most - 1) / most;
     const std::size_t share = std::max<std::size_t>(turns * kWorkers, 1);
     const auto each_mask = parallel::counting(masks.size());
@@ -293,7 +291,7 @@ class Binned final : public Coverage {
     const auto workers = static_cast<std::size_t>(frame.exec.concurrency());
     std::deque<OwnedBin> queues;
     while (queues.size() < bins) queues.emplace_back(frame.exec.memory());
-    // Entries that lie in the queues of each worker's bins: without any it need not look.
+    // The number of entries in the queues of each worker's bins. At 0 the worker skips them.
     std::vector<std::atomic<std::size_t>> waiting(workers);
     std::atomic<std::size_t> next = 0, stored = 0;
 
@@ -314,7 +312,7 @@ class Binned final : public Coverage {
       std::vector<std::uint32_t> list;
       for (;;) {
         throw_if_stopped();
-        // Asked before the queues are: what comes into them later is not missed.
+        // Read before the queues, so that later entries are not missed.
         const bool all_stored = stored.load(std::memory_order_acquire) == batches;
         if (waiting[worker].load(std::memory_order_acquire) > 0) {
           for (std::size_t bin = worker; bin < bins; bin += workers) {
@@ -332,7 +330,7 @@ class Binned final : public Coverage {
           std::this_thread::yield();
           continue;
         }
-        // Also where it throws: others wait for it.
+        // Counts the batch even if it throws, because other workers wait for it.
         const CountAtEnd count(stored);
         visit(batch, [&](Emitter& emitter) {
           draw_batch(begin + batch, emitter, [&](std::uint32_t piece, std::uint32_t bin) {
@@ -342,8 +340,8 @@ class Binned final : public Coverage {
         });
       }
     };
-    // All entries of a bin belong to its chunk, and the order in which the first pass has drawn
-    // them is kept: so whoever drew what when, a second pass finds the same chunks.
+    // A bin is a chunk with all its entries. Their order in the first pass is kept, so later passes
+    // find the same chunks whichever worker drew what.
     draw_shared(
         frame, batches + bins,
         [&](const auto& visit) {
@@ -372,7 +370,7 @@ class Binned final : public Coverage {
   std::size_t masks_per_entry_;
   PieceArray setup_;
 
-  // State of the draw under way.
+  // State of the current draw.
   Frame* frame_ = nullptr;
   TileGrid grid_;
   BlockOrder order_ = BlockOrder::row_major;

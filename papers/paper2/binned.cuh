@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// binned on a device, in two stages (paper 2): batches of 32 pieces are parted; the small ones are
-// drawn by the blocks of their boxes, the large ones go into the queue, an entry for each bin that
-// a box touches, and an entry becomes the exact mask of the tiles that are covered. Then all tiles
-// of all masks, found by rank and select, are dealt out to the threads one by one.
+// binned on a device, two-stage (binned.hpp). Masks are exact, and tiles, found by rank and select,
+// are dealt out to threads one by one.
 //
-// Deviations: those of the host's (coverage/binned.hpp), and that a batch, the paper's warp, is
-// here the 32 neighbours among the threads of a kernel: nothing else is done a batch at a time. The
-// persistent schedule is the CPU's.
+// Deviations: the host's. Also, a batch (the paper's warp) is 32 neighbouring threads of a kernel:
+// nothing else is done by batch. The persistent schedule is the CPU's.
 #pragma once
 
 #include <cstddef>

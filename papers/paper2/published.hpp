@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Paper 2: L. E. Ioannis, "Software rasterization of large triangles", section 3. GTX 1070 Ti.
-// The paper gives neither the image's size nor the triangles: "large" is 4,000 to 40,000 fragments,
+// Paper 2: L. E. Ioannis, "Software rasterization of large triangles", section 3. GTX 1070 Ti. The
+// paper gives neither the image's size nor the triangles: "large" is 4,000 to 40,000 fragments,
 // "very large" anything above.
 #pragma once
 
@@ -17,7 +17,7 @@ inline constexpr std::array kTable{
     PublishedRow<3>{"two-stage: rasterize bins", "", {{{0.746}, {1.041}, {1.357}}}},
     PublishedRow<3>{"two-stage: both", "", {{{0.966}, {1.26}, {1.577}}}},
 };
-/// Fragments of a large triangle, at least and at most.
+/// The least and the most fragments of a large triangle.
 inline constexpr int kLargeFragments = 4000, kVeryLargeFragments = 40000;
 
 }  // namespace rastrum::bench::paper2

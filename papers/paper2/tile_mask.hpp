@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which tiles of a bin a piece covers, as a mask (paper 2, section 2, "Tile coverage"): row by row
-// of tiles, from the half-spaces of its edges.
+// The mask of the tiles of a bin that a piece covers (paper 2, section 2, "Tile coverage"), row by
+// row of tiles, from the half-spaces of its edges.
 //
-// The paper extends the edges by half a tile, so that no tile is missed and some are too many. Here
-// the mask is exact: a tile is in it if and only if one of its samples is covered. An edge whose
-// sample farthest inside is outside rules a tile out. Where all other edges hold all samples of a
-// tile, that farthest sample is covered. Tiles that two or more edges cut, at corners and along
-// slivers, are tested row by row.
+// The paper extends the edges by half a tile, so its mask misses no tile and has some too many.
+// Here the mask is exact: it has a tile if and only if one of the tile's samples is covered. An
+// edge rules a tile out if even the sample farthest inside is outside. If all other edges hold all
+// samples of the tile, that farthest sample is covered. Tiles that two or more edges cut, at
+// corners and along slivers, are tested row by row.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@
 
 namespace rastrum::family {
 
-/// The numbers t in [0, n) with base + step · t ≥ 0, which are the first ones or the last ones.
+/// The numbers t in [0, n) with base + step · t ≥ 0. They are the first or the last ones.
 RASTRUM_HD inline Span half_line(std::int64_t base, std::int64_t step, int n) {
   const bool first = base >= 0, last = base + step * (n - 1) >= 0;
   if (first && last) return {0, n};
@@ -36,8 +36,8 @@ RASTRUM_HD inline bool covers_any(const Piece& piece, Rect r) {
   return false;
 }
 
-/// Pixels of tile t of a bin whose tiles are numbered row by row, also those beyond the bin's
-/// rectangle where the view cuts it.
+/// The pixels of tile t of a bin, numbered row by row. They may lie beyond the bin where the view
+/// cuts it.
 [[nodiscard]] RASTRUM_HD inline Rect tile_of_bin(BinSizes sizes, Rect bin, int t) {
   const int px = sizes.tile_px();
   const Cell cell = sizes.tile_cell(t);
@@ -45,13 +45,15 @@ RASTRUM_HD inline bool covers_any(const Piece& piece, Rect r) {
   return {x0, y0, x0 + px, y0 + px};
 }
 
-/// Calls add(t) for the tiles with samples inside of `bin` that `piece` covers, ascending.
+/// Calls add(t), ascending, for the tiles whose samples inside of `bin` are partly covered by
+/// `piece`.
 template <class Add>
 RASTRUM_HD void cover_tiles(BinSizes sizes, const Piece& piece, Rect bin, Add&& add) {
   const Rect box = piece_bounds(piece, bin);
   if (box.empty()) return;
   const int px = sizes.tile_px(), by = sizes.tile_log2, across = sizes.tiles_across();
-  // A tile's sample that is farthest inside an edge and the one farthest outside, for tile (0, 0).
+  // For tile (0, 0) and each edge: values at the sample farthest inside and at the one farthest
+  // outside.
   const Edges edges = edges_of(piece);
   std::int64_t inmost[4], outmost[4], along_x[4], along_y[4];
   for (int i = 0; i < edges.count; ++i) {

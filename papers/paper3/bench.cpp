@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench paper3`: paper 3, sections 5.6 (time over distance, columns and rows) and 6.2
-// (shadows), and frames of the usual sizes beside the original program under node and the floor: 4
-// bytes a pixel written once by streaming stores, 4 bytes a sample read once.
+// (shadows). Also frames of the usual sizes beside the original program under node and the floor:
+// each pixel's 4 bytes written once by streaming stores, each sample's 4 bytes read once.
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -42,7 +42,7 @@ using terrain::TerrainRendererOptions;
 using terrain::TerrainStats;
 using terrain::TerrainTargets;
 
-/// Hills of eight octaves, 1024², whole heights 0 to 200; the same at every run.
+/// Hills of eight octaves, 1024², whole heights 0 to 200; the same in every run.
 HeightMap hills() {
   constexpr int kSize = 1024;
   std::mt19937 random(1);
@@ -81,7 +81,7 @@ HeightMap hills() {
   return map;
 }
 
-/// One way to draw, with its own threads and picture.
+/// A way to draw, with its own threads and picture.
 struct TerrainEntry {
   std::string name;
   std::shared_ptr<TerrainRenderer> renderer;
@@ -102,7 +102,7 @@ struct TerrainEntry {
   }
 };
 
-/// Rounds of A B C … and, last in each, the peer's turn.
+/// Each round runs all entries in order, the peer last.
 void interleave(const Terrain& terrain, std::vector<TerrainEntry>& entries, NodePeer* peer,
                 std::vector<double>& peer_ms, const Plan& plan) {
   std::vector<Contender> contenders;
@@ -150,10 +150,10 @@ constexpr Setting kSizes[] = {{800, 450, 800, false},
                               {3840, 2160, 2000, false},
                               {3840, 2160, 2000, true}};
 
-/// Indices of entries: the threads' come first, then a device's.
+/// Indices of entries: first the threads', then a device's.
 constexpr std::size_t kFast = 1, kFirstOnDevice = 4;
 
-/// The first of the device's entries whose picture is not the threads'; null: there is none.
+/// The first of the device's entries whose picture differs from the threads'; null if none does.
 const TerrainEntry* differs_from_fast(std::vector<TerrainEntry>& entries, const Terrain& terrain) {
   entries[kFast].frame(terrain);
   for (std::size_t i = kFirstOnDevice; i < entries.size(); ++i) {
@@ -164,7 +164,7 @@ const TerrainEntry* differs_from_fast(std::vector<TerrainEntry>& entries, const 
   return nullptr;
 }
 
-/// Returns false where classic's picture is not the peer's.
+/// Returns false if the picture of classic differs from the peer's.
 bool frames(const TableOptions& options, const MachineLimits& device, const HeightMap& map,
             Document& document) {
   const Terrain terrain(map);
@@ -274,8 +274,8 @@ bool frames(const TableOptions& options, const MachineLimits& device, const Heig
   return right;
 }
 
-/// A frame of figures 5.6 to 5.8, which go to 10⁶ columns or rows where pictures end at 32,768: the
-/// methods are called as TerrainRenderer calls them, on pixels of our own.
+/// A frame of figures 5.6 to 5.8, which go to 10⁶ columns or rows; pictures end at 32,768. So this
+/// calls the methods as TerrainRenderer does, on pixels of its own.
 class WideFrame {
  public:
   WideFrame(const Terrain& terrain, const TerrainOptions& options, int threads)
@@ -326,7 +326,7 @@ const ScaledWay kScaledWays[] = {{"words, serial", &family::terrain_words(), Dev
                                  {"words", &family::terrain_words(), Device::threads},
                                  {"fast", nullptr, Device::threads}};
 
-/// The times of kScaledWays; none where their pictures differ.
+/// The times of kScaledWays; empty if their pictures differ.
 std::vector<Timing> time_ways(const Terrain& terrain, const TerrainOptions& options, int threads,
                               const Plan& plan) {
   WideFrame frame(terrain, options, threads);
@@ -342,7 +342,7 @@ std::vector<Timing> time_ways(const Terrain& terrain, const TerrainOptions& opti
   return measure_interleaved(contenders, plan);
 }
 
-/// Figures 5.6 to 5.8. Returns false where a picture is wrong.
+/// Figures 5.6 to 5.8. Returns false if a picture is wrong.
 bool scaling(const TableOptions& options, const HeightMap& map, Document& document) {
   const Terrain terrain(map);
   Plot plot;

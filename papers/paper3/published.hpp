@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// FutSpace (Kristensen, Rasmussen, Sørensen and Troelsen, 2020), section 5.6: what its figures 5.6
-// to 5.8 vary. The figures are drawn, not printed, so there is no number of theirs to stand beside
-// ours; what the text says of them is here.
+// FutSpace (Kristensen, Rasmussen, Sørensen and Troelsen, 2020), section 5.6: the parameters of
+// figures 5.6 to 5.8. The paper plots its times without numbers, so only the findings in its text
+// are here.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 namespace rastrum::bench::paper3 {
 
 inline constexpr std::string_view kMachine = "Ryzen 5 3600 (C) and GTX 1080 (OpenCL)";
-/// Two of distance d, columns m and rows l stay at this, the third grows.
+/// Two of distance d, columns m and rows l keep this value while the third grows.
 inline constexpr int kFixed = 10;
 inline constexpr std::array kSizes{10, 100, 1000, 10000, 100000, 1000000};
 /// Section 6.2, figures 6.7 to 6.9: shadows of a map of q × r with d_c samples a ray.

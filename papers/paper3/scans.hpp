@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The operators of paper 3's scans (section 4.3). Both are associative, which its appendix B.2
-// proves and a test samples.
+// The operators of paper 3's scans (section 4.3). Both are associative: the paper's appendix B.2
+// proves it, and a test samples it.
 #pragma once
 
 #include <cstdint>
@@ -11,9 +11,9 @@
 
 namespace rastrum::family {
 
-/// The paper's colour–height pair, with the distance for those who want depth. Its row is the first
-/// that it would be drawn in, at least 0. Not drawn: terrain::kNoRow. Listing 4.6 clamps rows to
-/// the last one instead, which draws what lies below the picture into its bottom row.
+/// The paper's colour–height pair, with a distance for depth pictures. `row` is the first row that
+/// it would be drawn in, at least 0, or terrain::kNoRow if it is not drawn. Listing 4.6 instead
+/// clamps rows to the last one, which draws terrain below the picture into its bottom row.
 struct Pair {
   Rgba8 color;
   float depth = 0;
@@ -23,22 +23,22 @@ struct Pair {
 /// The neutral element of `Occlude`: a pair that is not drawn.
 inline constexpr Pair kNoPair{{}, 0, terrain::kNoRow};
 
-/// Listing 4.8: the nearer one where it hides the farther one.
+/// Listing 4.8: the nearer pair if it hides the farther one.
 struct Occlude {
   RASTRUM_HD Pair operator()(const Pair& nearer, const Pair& farther) const {
     return nearer.row <= farther.row ? nearer : farther;
   }
 };
 
-/// A pixel of a column. Empty is a distance of 0, which no sample has; listing 4.10 takes the sky's
-/// colour for emptiness, so that terrain of that colour is painted over.
+/// A pixel of a column. A distance of 0, which no sample has, is empty. Listing 4.10 instead uses
+/// the sky's colour, so it overpaints terrain of that colour.
 struct Pixel {
   Rgba8 color;
   float depth = 0;
   friend bool operator==(const Pixel&, const Pixel&) = default;
 };
 
-/// Listing 4.10: what is empty shows what is above it.
+/// Listing 4.10: an empty pixel shows the one above it.
 struct Fill {
   RASTRUM_HD Pixel operator()(const Pixel& above, const Pixel& below) const {
     return below.depth == 0 ? above : below;

@@ -18,7 +18,7 @@ using terrain::March;
 using terrain::ShadowOptions;
 using terrain::Sun;
 
-/// Heights in cells: the hills' 0 to 200 at half.
+/// Heights in cells: half of the hills' 0 to 200.
 Image<float> tiled_map(const Image<float>& heights, int width, int height) {
   Image<float> map(width, height);
   for (int y = 0; y < height; ++y)
@@ -27,13 +27,13 @@ Image<float> tiled_map(const Image<float>& heights, int width, int height) {
   return map;
 }
 
-/// The ways to find shadows; those of a device last.
+/// The ways to find shadows; a device's come last.
 constexpr const char* kWays[] = {"march", "sharp", "march, cuda", "sharp, cuda"};
 
 struct ShadowTimes {
-  std::vector<Timing> timings;  ///< of kWays, as many as there are; none: `right` is false
-  double hidden = 0;            ///< part of the cells that is in sharp shadow
-  bool right = true;            ///< the device's shadows are the threads'
+  std::vector<Timing> timings;  ///< one for each of kWays that ran; empty if `right` is false
+  double hidden = 0;            ///< share of the cells in sharp shadow
+  bool right = true;            ///< the device's shadows equal the threads'
 };
 
 ShadowTimes time_shadows(const TableOptions& options, int threads, const Image<float>& map,
@@ -79,7 +79,7 @@ void record(Document& document, const ShadowTimes& times, const Image<float>& ma
     document.figures.back()[kNames[i]] = to_json(times.timings[i]);
 }
 
-/// Figures 6.7 and 6.8. Returns false where a device's shadows are wrong.
+/// Figures 6.7 and 6.8. Returns false if a device's shadows are wrong.
 bool over_q_and_samples(const TableOptions& options, const Image<float>& heights,
                         Document& document) {
   Grid grid{"Figures 6.7 and 6.8: shadows, ms, all threads (sharp takes no samples)",

@@ -27,15 +27,15 @@ std::unique_ptr<terrain::DeviceRenderer> make_device_renderer() {
   return cuda_rows().make_terrain_renderer();
 }
 
-/// A batch's pairs, two screens, and what Thrust wants beside them. An arena rounds blocks up by a
+/// Memory of a batch's pairs, two screens, and Thrust's scratch. An arena rounds blocks up by a
 /// quarter.
 std::uint64_t device_bytes(std::uint64_t slices) {
   constexpr std::uint64_t kBytes = 64;
   return kBytes * std::max<std::uint64_t>(words_detail::kBatch, slices) / 4 * 5;
 }
 
-/// On threads some 35 times as long as `fast`, within a factor of 1.7 (docs/log/terrain.md); of an
-/// A100 guessed: pairs are written and scanned.
+/// On threads about 35 times as long as `fast`, within a factor of 1.7 (docs/log/terrain.md). The
+/// factor for a device is a guess for an A100: pairs are written and scanned.
 void weigh(FrameWork& work) {
   work.host_ns *= 35;
   work.device_ns *= 20;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Paper 3's words on a device: the listing of the CPU (words_listing.hpp), on Cuda. Its operators
-// are associative to the bit, so the scans need not keep the CPU's cut.
+// Paper 3's words on a device: the CPU's listing (words_listing.hpp) on Cuda. Its operators are
+// associative to the bit, so the scans may be cut differently from the CPU's.
 #include <memory>
 
 #include <papers/axes/cuda_rows.hpp>

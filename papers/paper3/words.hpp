@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Paper 3's `words` as a method of a TerrainRenderer. words_listing.hpp is how it draws.
+// Paper 3's `words` as a method of a TerrainRenderer, drawn by words_listing.hpp.
 #pragma once
 
 #include <rastrum/parallel/exec.hpp>

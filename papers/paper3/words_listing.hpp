@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Paper 3, chapter 4, on the data-parallel words: colour–height pairs for all samples, the
-// `occlude` scan along each column, a scatter into the columns of the picture, the `fill` scan down
-// them, a transposition. Work O(n · m + l · m), span O(log) beside the words' blocks.
+// Paper 3, chapter 4, in data-parallel words: makes colour–height pairs for all samples, scans each
+// column by `occlude`, scatters into the columns of the picture, scans them down by `fill`, and
+// transposes. Work O(n · m + l · m), span O(log) beside the words' blocks.
 //
-// One listing for all backends: words.cpp has serial and threads, words.cu the device.
+// One listing serves all backends: words.cpp has serial and threads, words.cu the device.
 //
-// Deviations. The maps over columns with scans inside are segmented scans. After the `occlude` scan
-// a hidden sample repeats the pair before it, which must not be scattered a second time: no two
-// writers may write one element here. So a pair is written where its row is not that of the pair
-// before. Columns go in batches, so that pairs take bounded memory.
+// Deviations. Segmented scans replace the maps over columns with scans inside. After the `occlude`
+// scan a hidden sample repeats the pair before it, and no two writers may write one element here.
+// So a pair is written only if its row differs from that of the pair before. Columns go in batches,
+// which bounds the memory of the pairs.
 #pragma once
 
 #include <algorithm>
@@ -31,7 +31,7 @@ namespace words_detail {
 /// Pairs of a batch, 12 bytes each.
 inline constexpr std::size_t kBatch = std::size_t{1} << 21;
 
-/// Section 4.2: the pair of sample i of the batch, samples lying column after column.
+/// Section 4.2: the pair of sample i of the batch, whose samples are stored column by column.
 template <class AnySamples>
 struct MakePair {
   AnySamples samples;
@@ -47,7 +47,7 @@ struct MakePair {
   }
 };
 
-/// Where a column begins whose elements lie side by side.
+/// The index of a column's first element.
 struct ColumnStart {
   std::size_t length;
   RASTRUM_HD std::size_t operator()(std::size_t column) const { return column * length; }
@@ -79,7 +79,7 @@ struct EmptyPixel {
   RASTRUM_HD Pixel operator()(std::size_t) const { return {}; }
 };
 
-/// Pixel i of the batch's rows.
+/// Writes pixel i of the batch's rows.
 struct WritePixel {
   std::span<const Pixel> frame;
   std::size_t first_column, columns;
@@ -120,7 +120,7 @@ std::uint64_t draw_columns(Exec& exec, const AnySamples& samples, std::size_t fi
 
 }  // namespace words_detail
 
-/// Samples and targets lie where `exec` computes; Samples or MapSamples.
+/// Draws Samples or MapSamples. Samples and targets are in the memory of `exec`.
 template <class Exec, class AnySamples>
 terrain::Counts draw_by_words(Exec& exec, const AnySamples& samples,
                               const terrain::TerrainTargets& targets) {

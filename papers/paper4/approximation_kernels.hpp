@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The SIMD leaves of the approximations (approximations_simd.cpp), once for each instruction set
-// and with the same bits. A row is all fragments of 8 pixels, elements `first` … of the block; a
-// layer has at most one of each pixel. Elements are numbered 8 · row + column.
+// The SIMD leaves of the approximations (approximations_simd.cpp), one for each instruction set,
+// all with the same bits. A row is all fragments of 8 pixels, elements `first` … of the block. A
+// layer has at most one fragment of each pixel. Elements are numbered 8 · row + column.
 #pragma once
 
 #include <cstddef>
@@ -11,10 +11,11 @@
 
 namespace rastrum::family {
 
-/// A block while it is blended by moments.
+/// The state of a block that is blended by moments.
 struct alignas(64) MomentBlock {
-  float nearest[8], farthest[8];  ///< depths so far, of pixels of a column
-  /// A depth's logarithm, from −1 nearest to 1 farthest: log(nearest / depth) · scale + offset.
+  float nearest[8], farthest[8];  ///< depths so far, of the pixels of a column
+  /// Logarithm of a depth, from −1 (nearest) to 1 (farthest): log(nearest / depth) · scale +
+  /// offset.
   struct {
     float nearest, farthest, scale, offset;
   } warp;
@@ -22,7 +23,7 @@ struct alignas(64) MomentBlock {
   raster::BlockColors colors;    ///< sums, weighted by transmittance
 
   void clear();
-  /// From the depths so far.
+  /// Computes `warp` from the depths so far.
   void set_warp();
 };
 
@@ -30,16 +31,16 @@ struct MomentKernels {
   /// The first pass: depths.
   void (*row_depths)(const transparency::PackedRow& row, MomentBlock& block) noexcept;
   void (*layer_depths)(const transparency::Layer& layer, MomentBlock& block) noexcept;
-  /// The second and third at once.
+  /// The second and third passes at once.
   void (*row)(const transparency::PackedRow& row, std::size_t first, MomentBlock& block) noexcept;
-  /// The second, the third.
+  /// The second pass and the third.
   void (*sum_layer)(const transparency::Layer& layer, MomentBlock& block) noexcept;
   void (*weigh_layer)(const transparency::Layer& layer, MomentBlock& block) noexcept;
   void (*finish)(const MomentBlock& block, const raster::BlockColors& behind,
                  raster::BlockColors& out) noexcept;
 };
 
-/// By weights.
+/// Weighted blending.
 struct alignas(64) WeightedBlock {
   raster::BlockColors sum;
   float through[64];
@@ -54,10 +55,10 @@ struct WeightedKernels {
                  raster::BlockColors& out) noexcept;
 };
 
-/// By a few layers a pixel.
+/// Blending that keeps a few layers a pixel.
 inline constexpr std::size_t kKeptLayers = 4;
 struct alignas(64) MultiLayerBlock {
-  /// Nearest first, premultiplied; a depth below 0 where there is none.
+  /// Nearest first, premultiplied; a depth below 0 means no layer.
   struct {
     float depth[64], r[64], g[64], b[64], through[64];
   } layers[kKeptLayers];

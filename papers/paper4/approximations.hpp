@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The published approximations of transparency. They see the same fragments as the exact blending
-// (blend.hpp), in order of submission, so that what differs in the picture is theirs.
+// The published approximations of transparency. They take the same fragments as the exact blending
+// (blend.hpp), in order of submission, so that all differences in the picture are theirs.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The approximations in vectors of pixels with Highway, compiled once per instruction set.
-// Multiply and add are kept apart, so all give the bits of the scalar form.
+// The approximations in vectors of pixels with Highway, compiled once per instruction set. Multiply
+// and add are never fused, so all have the bits of the scalar form.
 #include <rastrum/parallel/simd_targets.hpp>
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "papers/paper4/approximations_simd.cpp"
@@ -24,12 +24,12 @@ using raster::BlockColors;
 using transparency::Layer;
 using transparency::PackedRow;
 
-/// Part of the mass at a fragment's own depth that counts as in front of it (the paper's
+/// The share of the mass at a fragment's own depth that counts as in front of it (the paper's
 /// overestimation).
 inline constexpr float kOverestimation = 0.25F;
-/// Alpha beyond which −log(1 − α) is cut: the background is then seen through by 10⁻⁶.
+/// The largest alpha in −log(1 − α). The background's share is then 10⁻⁶.
 inline constexpr float kMostAlpha = 1 - 1e-6F;
-/// Replaces a depth of 0, that of fragments at infinity.
+/// Replaces a depth of 0, which fragments at infinity have.
 inline constexpr float kLeastDepth = 1e-30F;
 }  // namespace rastrum::family::approximations
 #endif
@@ -71,7 +71,6 @@ HWY_INLINE void store(F v, float* to) {
 HWY_INLINE hn::Mask<F32> lanes_of(std::uint64_t mask) {
   return hn::RebindMask(F32{}, lane_mask(mask));
 }
-/// The high and the low halves of keys.
 HWY_INLINE hn::Vec<U32> high_halves(const std::uint64_t* keys) {
   return hn::ConcatOdd(U32{}, hn::BitCast(U32{}, hn::LoadU(U64{}, keys + kLanes64)),
                        hn::BitCast(U32{}, hn::LoadU(U64{}, keys)));

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The approximations that take each fragment once:
 //
-// Weighted blended transparency (McGuire and Bavoil, JCGT 2013): a weighted mean of all colours,
-// over what the product of their transmittances leaves of the background. The weight is the paper's
-// equation 10, α · max(0.01, 3000 (1 − z)³), the one that reads window depth z alone; depth is
-// reversed here, so 1 − z is our depth.
+// Weighted blended transparency (McGuire and Bavoil, JCGT 2013): a weighted mean of all colours
+// over the background times the product of the transmittances. The weight is the paper's equation
+// 10, α · max(0.01, 3000 (1 − z)³), the one that needs only the window depth z. Depth is reversed
+// here, so 1 − z is our depth.
 //
 // Multi-layer alpha blending (Salvi and Vaidyanathan, I3D 2014): a pixel keeps four layers sorted
-// by depth; a fifth makes the last two become one. So it depends on the order of submission where
-// more than four surfaces overlap.
+// by depth, and a fifth merges the last two. So where more than four surfaces overlap, the result
+// depends on the order of submission.
 #include <papers/paper4/approximation_kernels.hpp>
 #include <papers/paper4/approximations.hpp>
 
 namespace rastrum::family {
 namespace {
 
-/// By `Kernels` that gather fragments in a `Block`.
+/// Blends by `Kernels` that gather fragments in a `Block`.
 template <class Kernels, class Block>
 class InOnePass final : public LayerBlend {
  public:

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Moment-based transparency (Münstermann et al., I3D 2018): a first pass sums power moments of the
-// absorbance −log(1 − α) over depth, a second weights each fragment with the transmittance at its
-// depth that the moments imply (moments.inl), in float32 as the paper has it, with its biases.
+// Moment-based transparency (Münstermann et al., I3D 2018): one pass sums power moments of the
+// absorbance −log(1 − α) over depth. A second weights each fragment with the transmittance at its
+// depth that the moments imply (moments.inl), in float32 with the paper's biases.
 //
-// Deviation: depths are warped logarithmically to [−1, 1] over the range of the block's fragments
-// (a pass of its own) rather than of the frame.
+// Deviation: a pass before them finds the depth range of the block, and depths are warped
+// logarithmically to [−1, 1] over it, not over the range of the frame.
 #include <papers/paper4/approximation_kernels.hpp>
 #include <papers/paper4/approximations.hpp>
 
@@ -33,7 +33,7 @@ class MomentBased final : public LayerBlend {
                   : kernel_.weigh_layer)(l, block_);
     return 0;
   }
-  /// Moments and weights at once.
+  /// Sums moments and weighs at once: a row has all fragments of its pixels.
   bool row(const transparency::PackedRow& row, std::size_t first) override {
     if (pass_ == 0) kernel_.row_depths(row, block_);
     if (pass_ == 1) kernel_.row(row, first, block_);

@@ -2,7 +2,7 @@
 // The passes of moment-based transparency over a block, in lanes of pixels or in one float.
 #include <papers/paper4/moments.inl>
 
-/// Depths so far, raised by those of `some`.
+/// Widens the range of the depths so far by the depths of `some`.
 template <class Mask>
 RASTRUM_LANES void widen(Mask some, F depth, std::size_t column, MomentBlock& block) {
   store(max_of(load(block.nearest + column), choose_or_zero(some, depth)), block.nearest + column);
@@ -38,7 +38,7 @@ RASTRUM_LANES Sums<2 * n + 1> load_sums(const MomentBlock& block, std::size_t i)
   return sums;
 }
 
-/// Where a pixel has no fragment its colour is 0, and adds nothing.
+/// A pixel without a fragment has colour 0, which adds nothing.
 template <int n>
 void whole_row(const PackedRow& row, std::size_t first, MomentBlock& block) noexcept {
   if (row.layers == 0) return;
@@ -65,7 +65,7 @@ void sum_layer(const Layer& layer, MomentBlock& block) noexcept {
     if ((layer.mask >> i & kVector) == 0) continue;
     const auto some = lanes_of(layer.mask >> i);
     Sums<2 * n + 1> sums = load_sums<n>(block, i);
-    // Where there is none its keys are anything.
+    // The keys of pixels without a fragment have any value.
     sums.add(choose_or_zero(some, absorbance(load(layer.colors.a + i))),
              choose_or_zero(some, warp(depths(layer.keys + i))));
     for (int k = 0; k <= 2 * n; ++k) store(sums.sum[k], block.sum[k] + i);

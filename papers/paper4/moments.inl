@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The arithmetic of moment-based transparency (mboit.cpp says which method), in lanes of pixels or
-// in one float (approximations_simd.cpp): one body, so that all instruction sets and the scalar
-// kernels have the same bits.
+// The arithmetic of moment-based transparency (mboit.cpp), in lanes of pixels or in one float
+// (approximations_simd.cpp). One body gives all instruction sets and the scalar kernels the same
+// bits.
 //
-// With 2 n moments of a measure of mass 1 the absorbance in front of depth z is that of the
-// truncated Hamburger moment problem (Peters and Klein, "Moment Shadow Mapping", 2015): the measure
-// with these moments that has a node at z and n others, the roots of the kernel K(z, ·) = Σ Pᵢ(z)
-// Pᵢ(·) / Dᵢ of its orthogonal polynomials. Node z has mass 1 / K(z, z). The paper interpolates
-// over all roots, but one root is enough. The sign of K's leading coefficient says how many roots
-// lie in front of z up to a pair; K's derivatives at z say whether all others lie on one side.
-// Where they do not, the outermost root that is alone there has a mass that the moments about z
-// give. All is written in t = 1 / (x − z), whose polynomial begins with K(z, z) ≥ 1: roots far away
-// are small t, and nothing grows without bound.
+// The 2 n moments belong to a measure of mass 1. The absorbance in front of depth z is that of the
+// truncated Hamburger moment problem (Peters and Klein, "Moment Shadow Mapping", 2015): of the
+// measure with these moments that has a node at z and n others. The others are the roots of the
+// kernel K(z, ·) = Σ Pᵢ(z) Pᵢ(·) / Dᵢ of its orthogonal polynomials. Node z has mass 1 / K(z, z).
+// The paper interpolates over all roots, but one root is enough. The sign of K's leading
+// coefficient says how many roots lie in front of z, up to a pair; K's derivatives at z say whether
+// all others lie on one side. If not, one outermost root is alone on its side, and the moments
+// about z give its mass. The polynomial is written in t = 1 / (x − z) and begins with K(z, z) ≥ 1:
+// far roots are small t, so nothing grows without bound.
 
-/// log(n / d) of positive normal numbers n ≥ d. Small results have a small relative error, too.
+/// log(n / d) of positive normal numbers n ≥ d. The relative error is small for small results too.
 RASTRUM_LANES F log_ratio(F n, F d) {
   // d · 2^k is near n; then log(n / d) = 2 artanh((n − d) / (n + d)) + k log 2.
   const I k = shift_right_23(bits(n) - bits(d) + integer(1 << 22));
@@ -25,9 +25,9 @@ RASTRUM_LANES F log_ratio(F n, F d) {
   return to_float(k) * set(0.693147181F) + (twice + twice * series);
 }
 
-/// exp(−x) of x ≥ 0; beyond 80 as at 80. 1 at 0.
+/// exp(−x) for x ≥ 0, with x clamped to 80. Exactly 1 at 0.
 RASTRUM_LANES F exp_of_minus(F x) {
-  constexpr float kRounder = 12582912;  // 1.5 · 2²³: what is added to it is rounded to an integer
+  constexpr float kRounder = 12582912;  // 1.5 · 2²³: adding it rounds to an integer
   const F y = set(0) - min_of(x, set(80));
   const F rounded = y * set(1.44269504F) + set(kRounder);
   const F k = rounded - set(kRounder);
@@ -43,14 +43,14 @@ RASTRUM_LANES F exp_of_minus(F x) {
 
 /// −log(1 − α), for an α of at most 1 − 10⁻⁶ and at least 0.
 RASTRUM_LANES F absorbance(F alpha) {
-  // Not NaN: comparisons, no minimum.
+  // Uses comparisons, not a minimum, so that NaN becomes 0.
   const F kept =
       choose(alpha > set(0), choose(alpha < set(kMostAlpha), alpha, set(kMostAlpha)), set(0));
   return log_ratio(set(1), set(1) - kept);
 }
 
-/// Maps a block's depths to −1 (the nearest) … 1 (the farthest); 0 where they are one. A lane
-/// without a fragment counts as the farthest, or its result is used for nothing.
+/// Maps a block's depths to −1 (the nearest) … 1 (the farthest), or to 0 if they are all equal. A
+/// lane without a fragment counts as the farthest, or its result is not used.
 struct Warp {
   F nearest, farthest, scale, offset;
 
@@ -72,8 +72,8 @@ struct Sums {
   }
 };
 
-/// Moment k of `sums`, moved towards those of a measure that is spread out, which it is then inside
-/// of by kBias (the paper's supplement, table 1).
+/// Moment k of `sums`, moved by `bias` towards that of a spread-out measure. This makes the moments
+/// valid despite rounding (the paper's supplement, table 1).
 template <int kCount>
 RASTRUM_LANES F biased(const Sums<kCount>& sums, F scale, int k, float bias, float towards) {
   return set(1 - bias) * (sums.sum[k] * scale) + set(bias * towards);
@@ -94,7 +94,7 @@ struct Problem<2> {
     b2 = biased(sums, scale, 2, kBias, 0.375F);
     const F b3 = biased(sums, scale, 3, kBias, 0);
     const F b4 = biased(sums, scale, 4, kBias, 0.375F);
-    // The Hankel matrix as L D Lᵀ. The bias keeps D above its own part, but for roundings.
+    // The Hankel matrix as L D Lᵀ. But for rounding, the bias keeps D above the bias's own part.
     const F d1 = max_of(b2 - b1 * b1, set(kBias * 0.375F));
     over_d1 = set(1) / d1;
     const F v21 = b3 - b1 * b2;
@@ -107,19 +107,19 @@ struct Problem<2> {
     const F p1 = z - b1, p2 = z * z - b2 - l21 * p1;
     const F u1 = p1 * over_d1, u2 = p2 * over_d2;
     const F mass = set(1) / (set(1) + p1 * u1 + p2 * u2);
-    // t² + a t + b, of which t are the inverse distances of the two roots.
+    // t² + a t + b, whose roots t are the inverse distances of the two nodes.
     const F a = (u1 + u2 * (z + z - l21)) * mass, b = u2 * mass;
     const F half = a * set(0.5F);
     const F root = square_root(max_of(half * half - b, set(1e-30F)));
     const F rest = set(1) - mass, quarter = mass * set(kOverestimation);
-    // One on either side: the mass of that in front, by the moments 1 and z.
+    // One root on either side: the moments 1 and z give the mass of the one in front.
     const F first = (rest * (half + root) - p1 * b) / (root + root);
     const F same_side = choose(half > set(0), rest, set(0));
     return quarter + choose(b < set(0), first, same_side);
   }
 };
 
-/// 2 cos(acos(2 s² − 1) / 3) for s from 0 to 1: within 5e-8.
+/// 2 cos(acos(2 s² − 1) / 3) for s from 0 to 1, with an error below 5e-8.
 RASTRUM_LANES F two_cos_of_third(F s) {
   return set(1.0000000455F) +
          s * (set(1.154694445F) +
@@ -161,7 +161,7 @@ struct Problem<3> {
     const F p3 = square * z - b3 - l31 * p1 - l32 * p2;
     const F u1 = p1 * over_d1, u2 = p2 * over_d2, u3 = p3 * over_d3;
     const F mass = set(1) / (set(1) + p1 * u1 + p2 * u2 + p3 * u3);
-    // t³ + a t² + b t + c, mirrored so that c is not negative: then roots behind z come in a pair.
+    // t³ + a t² + b t + c, mirrored so that c ≥ 0: then the roots behind z come in a pair.
     const F slope2 = z + z - l21;
     const F slope = u1 + u2 * slope2 + u3 * (set(3) * square - l31 - l32 * slope2);
     const auto mirrored = u3 < set(0);
@@ -170,13 +170,13 @@ struct Problem<3> {
     const F c = choose(mirrored, set(0) - u3, u3) * mass;
     const F first_moment = choose(mirrored, p1, set(0) - p1);
     const F second_moment = b2 - (z + z) * b1 + square;
-    // The smallest root, of which there is one below 0, or three (Viète).
+    // The smallest root (Viète). One root is below 0, or three are.
     const F h = a * set(1.0F / 3), square_r = max_of(h * h - b * set(1.0F / 3), set(1e-24F));
     const F r = square_root(square_r);
     const F q = (h * (h * h - b * set(0.5F)) + c * set(0.5F)) / (square_r * r);
     const F half = min_of(max_of(q * set(0.5F) + set(0.5F), set(0)), set(1));
     const F t = set(0) - r * two_cos_of_third(square_root(half)) - h;
-    const F others = a + t;  // minus the sum of the other two
+    const F others = a + t;  // minus the sum of the other two roots
     const F product = b + t * others;
     const F rest = set(1) - mass, quarter = mass * set(kOverestimation);
     const F slope_at_t = t * (set(3) * t + a + a) + b;
@@ -187,7 +187,7 @@ struct Problem<3> {
   }
 };
 
-/// How much of a fragment at z is seen through everything in front of it.
+/// The transmittance of everything in front of a fragment at z.
 template <int n>
 RASTRUM_LANES F transmittance(const Problem<n>& problem, F absorbance_sum, F z) {
   const F share = min_of(max_of(problem.before(z), set(0)), set(1));

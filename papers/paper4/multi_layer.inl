@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Multi-layer alpha blending (in_one_pass.cpp says which), in lanes of pixels or in one float.
-// Fragments come in order of submission, so that of two at one depth the one that is there already
-// is in front, and depths alone tell the order.
+// Multi-layer alpha blending (in_one_pass.cpp), in lanes of pixels or in one float. Fragments come
+// in order of submission, so of two at one depth the earlier one is in front, and depths alone give
+// the order.
 
-/// Premultiplied colour, and how much is seen through it.
+/// Premultiplied colour and transmittance.
 struct Merged {
   F r, g, b, through;
 
@@ -38,13 +38,12 @@ struct KeptLayers {
     }
   }
 
-  /// Puts a fragment in its place by depth. Each layer that it displaces moves on by one place, and
-  /// the one behind the last place merges with the last.
+  /// Inserts a fragment by depth. The layers behind it move on by one place, and the one that
+  /// leaves the last place merges with the last.
   RASTRUM_LANES void add(const V4& color, F at) {
     Merged fragment{color.x, color.y, color.z, set(1) - color.w};
     F moved = at;
     for (std::size_t k = 0; k < kKeptLayers; ++k) {
-      // All layers move on from the place that the fragment takes.
       const auto nearer = at > depth[k];
       const F other_depth = choose(nearer, depth[k], moved);
       const Merged other{choose(nearer, merged[k].r, fragment.r),
@@ -62,7 +61,7 @@ struct KeptLayers {
   }
 };
 
-/// Where a pixel has no fragment its colour is 0, and what merges changes nothing.
+/// A pixel without a fragment has colour 0, and its merge changes nothing.
 void multi_layer_row(const PackedRow& row, std::size_t first, MultiLayerBlock& block) noexcept {
   if (row.layers == 0) return;
   for (std::size_t part = 0; part < 8; part += kLanes) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Paper 4: K. Jakubowski, "LucidRaster: GPU software rasterizer for exact order-independent
-// transparency". These figures are from its text; its tables of each scene are pictures in the copy
-// at hand.
+// transparency". These figures are from its text; its tables of each scene are pictures.
 #pragma once
 
 #include <array>
@@ -9,8 +8,8 @@
 
 namespace rastrum::bench::paper4 {
 
-/// Section 3, "Fragment sorting errors": percent of the pixels that are wrong by the depth filter's
-/// size; 0: not published. The scene is ours, or one that is not at hand.
+/// Section 3, "Fragment sorting errors": percent of wrong pixels by the size of the depth filter;
+/// 0: not published. The scenes are ours, or not available.
 inline constexpr std::array<int, 3> kFilters{3, 8, 12};
 struct WrongPixels {
   std::string_view scene;
@@ -26,7 +25,7 @@ struct OverUnsorted {
 };
 inline constexpr OverUnsorted kOverUnsorted{3.3, 2.1, 5.1};
 
-/// The same of other techniques, as the paper takes them from the one on moments.
+/// The same for other techniques, which the paper takes from the one on moments.
 struct Other {
   std::string_view technique;
   double over_unsorted;
@@ -34,7 +33,7 @@ struct Other {
 inline constexpr std::array<Other, 4> kOthers{
     {{"wboit", 1.17}, {"mboit4", 2.6}, {"mboit6", 3.1}, {"mlab4", 4.75}}};
 
-/// Alpha at which its blocks are finished, where that is asked for.
+/// The alpha at which a block is finished, if the early end is on.
 inline constexpr float kAlphaThreshold = 1 - 1.0F / 128;
 
 }  // namespace rastrum::bench::paper4

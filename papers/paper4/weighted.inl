@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Weighted blended transparency (in_one_pass.cpp says which), in lanes of pixels or in one float.
+// Weighted blended transparency (in_one_pass.cpp), in lanes of pixels or in one float.
 
 struct Weighted {
   V4 sum;
@@ -19,7 +19,7 @@ RASTRUM_LANES void store_weighted(const Weighted& pixel, WeightedBlock& block, s
   store(pixel.through, block.through + i);
 }
 
-/// Where a pixel has no fragment its colour is 0, and changes nothing.
+/// A pixel without a fragment has colour 0, which changes nothing.
 void weighted_row(const PackedRow& row, std::size_t first, WeightedBlock& block) noexcept {
   if (row.layers == 0) return;
   for (std::size_t part = 0; part < 8; part += kLanes) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // `rastrum bench paper5-table1` (with table 2's ratio) and `paper5-table3` (with figure 3): paper
-// 5, section 5, beside ours: its own way (`sorted`: rasterize, sort, select, write) and the
-// default.
+// 5, section 5, beside its own method (`sorted`: rasterize, sort, select, write) and our default.
 #include <algorithm>
 #include <limits>
 #include <vector>
@@ -28,7 +27,7 @@ double best_cpu(std::size_t data) {
   return best;
 }
 
-/// A smoke test is told no goal.
+/// Smoke tests print no goal.
 std::string goal_text(double times, double goal, const TableOptions& options) {
   if (times <= 0) return "not run";
   std::string text = significant(times) + " ×";
@@ -77,7 +76,7 @@ int run_paper5_table1(std::span<const std::string_view> arguments) {
     for (std::size_t i = 0; i < results.size(); ++i) {
       c.rows[first + i].ours[d] = measured_fps(results[i], scene.subject());
       times.push_back(c.rows[first + i].ours[d].value / best_cpu(d));
-      // An average that lacks a data set is none.
+      // An average without one of the data sets is undefined.
       seconds[i] += results[i].ran() ? results[i].median_ms() / 1000 / kDataSets.size()
                                      : std::numeric_limits<double>::quiet_NaN();
     }
@@ -119,7 +118,7 @@ int run_paper5_table3(std::span<const std::string_view> arguments) {
   const Paper5Scene scene = paper5_scene(paper5::kLandshark, scale, options);
   document.notes.push_back(describe(paper5::kLandshark, scene));
 
-  // Every number of threads is one contender, so that all take turns.
+  // Each number of threads is a contender, so that all take turns.
   std::vector<Entrant> entrants;
   for (const char* rasterizer : {"scanline", "auto"})
     for (const auto& row : paper5::kTable3) {

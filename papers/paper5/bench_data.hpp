@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stand-ins for paper 5's data sets: the triangles, the resolution and the fragments of its section
+// Stand-ins for paper 5's data sets, with the triangles, resolution and fragments of its section
 // 4.3.
 #pragma once
 
@@ -24,12 +24,12 @@ struct Paper5Scene {
   }
 };
 
-/// `data` at `scale` times its resolution, seen from where it has as many fragments a pixel as the
-/// paper counts. A smoke test has fewer triangles and a smaller scale.
+/// `data` at `scale` times its resolution. The camera stands where the fragments a pixel are the
+/// paper's. A smoke test has fewer triangles and a smaller scale.
 [[nodiscard]] Paper5Scene paper5_scene(const paper5::DataSet& data, int scale,
                                        const TableOptions& options);
 
-/// The note on stand-ins that stands under every table.
+/// The note on stand-ins under every table.
 [[nodiscard]] std::string paper5_note(const TableOptions& options);
 /// "Bunny: 112402 triangles, 1080 × 880, 1420700 fragments (paper: 1420700)".
 [[nodiscard]] std::string describe(const paper5::DataSet& data, const Paper5Scene& scene);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum bench paper5-table4`: paper 5, table 4 — Bunny subdivided 0 to 6 times at 1 to 128 ×
+// `rastrum bench paper5-table4`: paper 5, table 4, Bunny subdivided 0 to 6 times at 1 to 128 ×
 // image scale. Subdivided 6 times it has 460 million triangles; the paper's program failed there at
-// scale 128. Meshes that do not fit are made part by part and drawn in passes that load the keys of
-// the passes before (Pass::load); the picture is the same.
+// scale 128. Meshes that do not fit are made in parts and drawn in passes. Each pass loads the keys
+// of the one before (Pass::load), so the picture is the same.
 #include <algorithm>
 #include <optional>
 #include <vector>
@@ -27,7 +27,7 @@ namespace rastrum::bench {
 namespace {
 
 constexpr std::size_t kColumns = 7;
-/// Where the camera is matched; the other scales only have more or fewer samples.
+/// The scale at which the camera is matched. The others only have more or fewer samples.
 constexpr int kMatchScale = 10;
 
 struct Limits {
@@ -38,17 +38,17 @@ struct Limits {
   int subdivisions = 6, scale = 128;
 };
 
-/// One figure to be: a size, drawn in passes.
+/// One figure of the table: a size, drawn in passes.
 struct Cell {
   std::size_t row = 0;
-  Subject subject;  ///< but for the mesh
+  Subject subject;  ///< all but the mesh
   Image<std::uint64_t> keys;
   Image<Rgba8> picture;
   double ms = 0;
   std::vector<double> samples_ms = {};
   std::uint64_t scratch = 0;
-  std::uint64_t hash = 0;    ///< of the keys in the end
-  std::string stopped = {};  ///< why; empty: whole
+  std::uint64_t hash = 0;    ///< of the final keys
+  std::string stopped = {};  ///< the reason; empty if complete
 };
 
 std::uint64_t image_bytes(int width, int height) {
@@ -56,8 +56,8 @@ std::uint64_t image_bytes(int width, int height) {
          (sizeof(std::uint64_t) + sizeof(Rgba8));
 }
 
-/// Draws one part into a cell and adds its time. A renderer a pass, so that the cells do not keep
-/// scratch beside each other; making one is not timed.
+/// Draws one part into a cell and adds its time. Each pass has its own renderer, so that cells do
+/// not keep scratch at the same time. Making it is not timed.
 void draw_pass(Cell& cell, const Mesh& part, std::uint64_t first_id,
                const family::Options& options) {
   Renderer renderer = family::make_renderer(options, options);
@@ -75,8 +75,8 @@ void draw_pass(Cell& cell, const Mesh& part, std::uint64_t first_id,
   cell.scratch = std::max(cell.scratch, stats.peak_bytes);
 }
 
-/// The rows of one column by one entrant, in passes. Cells that hold too many pixels at once are
-/// done in groups, for each of which the parts are made again.
+/// Draws the rows of one column by one entrant, in passes. If the cells have too many pixels to
+/// hold at once, they go in groups, and the parts are made again for each group.
 void stream(std::vector<Cell>& cells, const Mesh& base, int times, std::size_t parts,
             const Entrant& entrant, const Limits& limits) {
   std::size_t begin = 0;
@@ -116,7 +116,7 @@ void stream(std::vector<Cell>& cells, const Mesh& base, int times, std::size_t p
   }
 }
 
-/// The same on a device that holds all parts at once: each frame is one pass, and takes its turns.
+/// The same on a device that holds all parts at once: a frame is one pass, and entrants take turns.
 void draw_in_place(std::vector<Cell>& cells, const Mesh& base, int times, std::size_t parts,
                    const Entrant& entrant, const Plan& plan) {
   MeshesInPlace meshes;
@@ -141,7 +141,7 @@ void draw_in_place(std::vector<Cell>& cells, const Mesh& base, int times, std::s
   }
 }
 
-/// Triangles a second and times the floor, of a table of frames a second.
+/// Converts a table of frames a second to triangles a second and multiples of the floor.
 void add_rates(Document& document, const Comparison& table, const std::string& name,
                std::size_t base_triangles, const MachineLimits& device) {
   Rates rates(name, table.first_column);
@@ -178,7 +178,7 @@ int run_paper5_table4(std::span<const std::string_view> arguments) {
   parser.add_option("--scale", limits.scale, "at most (128)")->range(1, 128);
   if (const auto status = options.read(parser, arguments, true)) return *status;
   if (options.quick) {
-    // Small, but with parts: every path is walked.
+    // Small, but with parts, so that every path runs.
     limits.subdivisions = std::min(limits.subdivisions, 2);
     limits.scale = std::min(limits.scale, 4);
     limits.part_triangles = std::min<std::uint64_t>(limits.part_triangles, 20000);

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where `hashed` keeps a pixel: the slots of an open table and the order in which they are probed,
-// for host and device.
+// The slots of the table of `hashed` and the order in which they are probed, for host and device.
 //
-// Blocks are hashed, and the 64 samples of a block have 64 slots in a row; a collision goes on to
-// the next block's slots and the next sample, so that blocks with few samples fill what others
-// leave.
+// Blocks are hashed: the 64 samples of a block have 64 consecutive slots. A collision goes on to
+// the next block's slots and the next sample, so that blocks with few samples share their slots.
 #pragma once
 
 #include <cstdint>
@@ -19,10 +17,10 @@ namespace rastrum::family {
 inline constexpr std::uint32_t kNoPixel = ~std::uint32_t{0};
 
 struct HashSlots {
-  /// Entries a slot at most. With 0.5, 0.7 and 0.9 `sorted` took 1.06, 1.13 and 1.16 times the time
-  /// of this (`rastrum bench hashed`, depth complexity 1, paired medians of 3 on a busy machine)
-  /// and at complexity 8 1.37, 1.42 and 1.21: blocks that are covered whole seldom meet, so that
-  /// memory decides until tables are nearly full.
+  /// Most entries per slot. With 0.5, 0.7 and 0.9 `sorted` took 1.06, 1.13 and 1.16 times the time
+  /// of this (`rastrum bench hashed`, depth complexity 1, paired medians of 3 on a busy machine),
+  /// and 1.37, 1.42 and 1.21 at complexity 8. Wholly covered blocks seldom collide, so memory
+  /// decides until the table is nearly full.
   static constexpr std::uint64_t kLoadNumerator = 7, kLoadDenominator = 10;
   /// Bytes of a slot: a pixel and a key.
   static constexpr std::uint64_t kBytes = sizeof(std::uint32_t) + sizeof(std::uint64_t);
@@ -30,14 +28,14 @@ struct HashSlots {
   std::uint64_t count;  ///< a multiple of 64
 
   static HashSlots of(std::uint64_t entries) {
-    // Two blocks' worth at least: a step is longer than one.
+    // At least two blocks' worth, because a step is longer than one block.
     std::uint64_t slots = (entries * kLoadDenominator / kLoadNumerator / 64 + 2) * 64;
-    // The steps of a probe must meet every slot.
+    // The steps of a probe must reach every slot.
     while (std::gcd(slots, kStep) != 1) slots += 64;
     return {slots};
   }
 
-  /// Where the probes for the samples of a block begin.
+  /// The first slot of a block's samples.
   [[nodiscard]] RASTRUM_HD std::uint64_t home(std::uint32_t block) const {
     const std::uint32_t hash = (block ^ block >> 15) * 0x9E3779B1U;
     return (std::uint64_t{hash} * (count / 64) >> 32) * 64;
@@ -48,7 +46,7 @@ struct HashSlots {
   }
 
  private:
-  /// On to the next block's slots and the next sample.
+  /// To the next block's slots and the next sample.
   static constexpr std::uint64_t kStep = 65;
 };
 

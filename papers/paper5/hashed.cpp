@@ -10,13 +10,13 @@
 namespace rastrum::family {
 namespace {
 
-/// From pixels to keys. Empty between uses.
+/// The hash table from pixels to keys. Empty between uses.
 template <Sharing kSharing>
 class Table {
  public:
   explicit Table(MemoryAccount& memory) : pixels_(memory), keys_(memory) {}
 
-  /// The most entries that fit into `bytes`, at least some blocks' worth.
+  /// The most entries that fit into `bytes`, but at least some blocks' worth.
   static std::uint64_t entries_for(std::uint64_t bytes) {
     return std::max<std::uint64_t>(
                bytes / HashSlots::kBytes * HashSlots::kLoadNumerator / HashSlots::kLoadDenominator,
@@ -24,7 +24,7 @@ class Table {
            256;
   }
 
-  /// Room for `entries`; `exec` may be null.
+  /// Makes room for `entries`. `exec` may be null.
   void restart(std::uint64_t entries, parallel::Threads* exec) {
     slots_ = HashSlots::of(entries).count;
     slots_used_ += slots_;
@@ -37,12 +37,11 @@ class Table {
     });
   }
 
-  /// Where the probes for the samples of a block begin.
   [[nodiscard]] std::uint64_t home(std::uint32_t block) const {
     return HashSlots{slots_}.home(block);
   }
-  /// Raises the key of a pixel; there must be room. Returns the slots looked at where the pixel is
-  /// new, else 0: their sum does not depend on the order in which pixels come.
+  /// Raises the key of a pixel; there must be room. Returns the number of slots probed if the pixel
+  /// is new, else 0. The sum does not depend on the order of the pixels.
   std::uint64_t raise(std::uint64_t home, std::uint32_t pixel, std::uint64_t key) {
     std::uint64_t slot = home + pixel % 64;
     std::uint64_t probes = 1;
@@ -83,7 +82,7 @@ class Table {
  private:
   enum class Slot { taken, known, of_another };
 
-  /// Takes the slot for the pixel if nobody has.
+  /// Takes the slot for the pixel if it is free.
   Slot take(std::uint32_t& slot, std::uint32_t pixel) {
     if constexpr (kSharing == Sharing::owned) {
       if (slot == pixel) return Slot::known;
@@ -112,12 +111,12 @@ class Table {
   ScratchBuffer<std::uint32_t> pixels_;
   ScratchBuffer<std::uint64_t> keys_;
   std::uint64_t slots_ = 0;
-  std::uint64_t entries_ = 0;  ///< now, where a thread owns the table
+  std::uint64_t entries_ = 0;  ///< the current number, if a thread owns the table
   std::uint64_t slots_used_ = 0, entries_found_ = 0;
 };
 
 /// Fills a table that may be too small for all pixels, and empties it into the surface when it is
-/// full. One thread's.
+/// full. For one thread.
 class FillAndEmpty {
  public:
   explicit FillAndEmpty(MemoryAccount& memory) : table_(memory) {}
@@ -127,7 +126,7 @@ class FillAndEmpty {
     most_ = std::min<std::uint64_t>(most_entries, pixels.pixel_count());
     table_.restart(most_, nullptr);
   }
-  /// At most 64 fragments come between two calls.
+  /// At most 64 fragments may come between two calls.
   void make_room() {
     if (most_ < pixels_.pixel_count() && table_.entries() + 64 > most_) flush();
   }
@@ -159,7 +158,7 @@ class FillAndEmpty {
   std::uint64_t most_ = 0, hashed_ = 0, probes_ = 0;
 };
 
-/// A tile's pixels bound its table, so nothing is counted before.
+/// The pixels of a tile bound its table, so no counting pass is needed.
 class OwnedHashedRegion final : public Region {
  public:
   explicit OwnedHashedRegion(MemoryAccount& memory) : table_(memory) {}
@@ -212,7 +211,7 @@ class SharedHashedRegion final : public Region {
     most_ = context.fragment_bytes == 0
                 ? ~std::uint64_t{0}
                 : Table<Sharing::shared>::entries_for(context.fragment_bytes);
-    // Where all pixels have room fragments need not be cut into runs.
+    // If all pixels have room, fragments are not cut into runs.
     if (most_ >= pixels_.pixel_count()) most_ = ~std::uint64_t{0};
     step_ = Step::begun;
   }

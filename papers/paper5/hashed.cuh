@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// hashed on a device: a table from pixels to keys, whose slots are taken by compare-and-swap and
-// whose keys are raised by atomic maximum; then its entries raise the surface (what paper 5 names
-// as future work, its section 6). A table is as large as the fragments of its part, which are
-// counted, and the pixels allow, so it is never full. The slots are the host's (hash_slots.hpp).
+// hashed on a device: compare-and-swap takes the slots of a table from pixels to keys, and an
+// atomic maximum raises the keys. Then the entries raise the surface (paper 5 names this as future
+// work in section 6). The slots are the host's (hash_slots.hpp). The table is sized by the counted
+// fragments of its part and by the pixels, so it is never full.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 
 namespace rastrum::family {
 
-/// Takes an empty slot for a pixel, by many threads at once; returns what it held.
+/// Takes an empty slot for a pixel, from many threads at once. Returns the previous content.
 RASTRUM_HD inline std::uint32_t take_slot(std::uint32_t& slot, std::uint32_t pixel) noexcept {
 #if defined(__CUDA_ARCH__)
   return atomicCAS(&slot, kNoPixel, pixel);
@@ -48,7 +48,7 @@ struct Insert {
   }
 };
 
-/// An entry has its pixel for itself.
+/// No other entry has this pixel.
 struct RaiseToEntry {
   const std::uint32_t* pixel;
   const std::uint64_t* key;
@@ -61,7 +61,7 @@ struct RaiseToEntry {
   }
 };
 
-/// Work O(fragments · log + slots) expected. Counters as the host's: "fragments hashed", "probes",
+/// Work O(fragments · log + slots) expected. Counters as on the host: "fragments hashed", "probes",
 /// "table slots", "table entries".
 template <class Exec>
 class HashedOnDevice final : public DeviceVisibility<Exec> {
@@ -71,13 +71,13 @@ class HashedOnDevice final : public DeviceVisibility<Exec> {
                std::span<const Block> blocks, std::uint64_t fragments) override {
     using parallel::range_detail::SameValue;
     Exec& exec = frame.exec;
-    // A slot with the note whether it was taken, at the table's load.
+    // A slot and its flag for taken, at the table's load.
     constexpr std::uint64_t kEntryBytes = (HashSlots::kBytes + sizeof(std::uint32_t)) *
                                               HashSlots::kLoadDenominator /
                                               HashSlots::kLoadNumerator +
                                           1;
     std::size_t most = frame.most_fragments(kEntryBytes);
-    // Where all pixels have room fragments need not be cut.
+    // If all pixels have room, fragments are not cut into parts.
     if (most >= frame.pixel_count()) most = static_cast<std::size_t>(fragments);
     auto probes = parallel::make_buffer<std::uint64_t>(exec, 1);
     parallel::tabulate(exec, probes, SameValue<std::uint64_t>{0});

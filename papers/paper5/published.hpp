@@ -21,15 +21,15 @@ inline constexpr DataSet kDragon{"Dragon", 311572, 22, 23, 1175};
 inline constexpr DataSet kCat{"Cat", 533180, 164, 150, 26531};
 inline constexpr DataSet kLandshark{"Landshark", 3750442, 77, 104, 30690};
 
-/// Table 1's lines, in the paper's order, and how many times faster than the better of the two CPU
-/// figures the default has to be here (0: no goal).
+/// Table 1's columns in the paper's order, and how many times faster than the better of the two CPU
+/// figures our default has to be (0: no goal).
 struct Goal {
   DataSet data;
   double times;
 };
 inline constexpr std::array<Goal, 6> kDataSets{
     {{kBagHolder, 20}, {kBunny, 20}, {kDarwin, 2.5}, {kDragon, 0}, {kCat, 10}, {kLandshark, 2.5}}};
-/// Tests of portability were run at this image scale (section 4.5.1).
+/// The image scale of the portability tests (section 4.5.1).
 inline constexpr int kScale = 10;
 
 /// Table 1, frames a second: a line a configuration, a column a data set.
@@ -56,7 +56,7 @@ inline constexpr std::array<Speedup, 3> kTable2{{{"Rasterization", 0.016, 0.158,
                                                  {"Raytracing", 0.042, 0.460, 10.9},
                                                  {"Volume rendering", 0.059, 0.974, 16.5}}};
 
-/// Table 3: Landshark, seconds by threads. The paper does not say the image's scale.
+/// Table 3: Landshark, seconds by threads. The paper does not give the image scale.
 struct Scaling {
   int threads;
   double seconds, cost_core_s, speedup;

@@ -14,16 +14,16 @@
 namespace rastrum::family {
 namespace {
 
-/// Fragments of a slice: with the sort's second half 640 KiB, in a core's L2 cache.
+/// Fragments of a slice: 640 KiB with the sort's second half, which fits a core's L2 cache.
 constexpr std::size_t kSlice = std::size_t{1} << 15;
-/// Below this many the sort's counters cost more than the fragments.
+/// Below this, the sort's counters cost more than the fragments.
 constexpr std::size_t kLeastSlice = 1024;
 
-/// Fragments of a slice such that a thread that may take `bytes` (0: any) sorts it in them.
+/// The size of a slice that a thread can sort in `bytes` (0: no limit).
 std::size_t slice_for(std::uint64_t bytes) {
   constexpr std::uint64_t kBytes = 2 * (sizeof(std::uint32_t) + sizeof(std::uint64_t));
   if (bytes == 0) return kSlice;
-  // An arena's blocks are up to a quarter larger than what was asked for.
+  // An arena's blocks can be a quarter larger than what was asked for.
   return std::clamp<std::uint64_t>(bytes / kBytes * 4 / 5, kLeastSlice, kSlice);
 }
 
@@ -33,7 +33,7 @@ int bits_for(std::size_t n) {
 }
 
 /// Sorts fragments by pixel and raises the surface to the maximum of each pixel. No other thread
-/// has these pixels.
+/// may write these pixels.
 template <class SortKey>
 void resolve(parallel::Serial& exec, std::span<SortKey> sort_keys, std::span<std::uint64_t> keys,
              int bits, const PixelNumbers& pixels, std::uint32_t first_block) {
@@ -47,7 +47,7 @@ void resolve(parallel::Serial& exec, std::span<SortKey> sort_keys, std::span<std
   }
 }
 
-/// Takes fragments as they come and resolves them whenever a slice is full.
+/// Takes fragments as they come and resolves them when a slice is full.
 class SliceBySlice {
  public:
   explicit SliceBySlice(MemoryAccount& memory) : sort_keys_(memory), keys_(memory) {}
@@ -123,8 +123,8 @@ class OwnedSortedRegion final : public Region {
   bool done_ = false;
 };
 
-/// The bands of a shared region: runs of blocks, each with a counter for each lane. A lane is a run
-/// of chunks; it has counters of its own so that threads seldom meet at one.
+/// The bands of a shared region: runs of blocks, each with a counter per lane. A lane is a run of
+/// chunks with counters of its own, so that threads seldom contend for one.
 class Bands {
  public:
   explicit Bands(MemoryAccount& memory) : cursors_(memory), begin_(memory) {}
@@ -152,12 +152,12 @@ class Bands {
   }
 
   void clear() { std::fill_n(cursors_.data(), bands_ * lanes_, std::uint64_t{0}); }
-  /// Counts `n` fragments of a block, or after `place` takes places for them. Returns the first.
+  /// Counts `n` fragments of a block or, after `place`, takes places for them. Returns the first.
   std::uint64_t take(std::size_t lane, std::uint32_t block, std::uint64_t n) {
     return std::atomic_ref<std::uint64_t>(cursors_[(block >> block_shift_) * lanes_ + lane])
         .fetch_add(n, std::memory_order_relaxed);
   }
-  /// Turns counts into places: bands one after the other, in each the lanes.
+  /// Turns counts into places: the bands in order, within a band the lanes.
   void place(parallel::Threads& exec) {
     const std::span<std::uint64_t> all(cursors_.data(), bands_ * lanes_);
     begin_[bands_] = parallel::exclusive_scan(exec, all, all, std::uint64_t{0});
@@ -165,9 +165,9 @@ class Bands {
   }
 
  private:
-  /// Enough that threads share them evenly and that few bits are left to sort by.
+  /// Enough that threads share them evenly and few bits are left to sort.
   static constexpr std::size_t kBands = 1024;
-  /// A pixel of a band has 16 bits.
+  /// A pixel number in a band has 16 bits.
   static constexpr int kMostBlockShift = 10;
 
   static std::size_t bands_for(const PixelNumbers& pixels, int shift) {
@@ -198,7 +198,7 @@ class SharedSortedRegion final : public Region {
     lanes_ = std::clamp<std::size_t>(chunks, 1, static_cast<std::size_t>(exec_->concurrency()) * 4);
     bands_.restart(pixels_, lanes_);
     chunk_counts_.restart(chunks);
-    // Half of the budget for the fragments, half for what the threads sort slices with.
+    // Half of the budget is for the fragments, half for the threads' sorts of slices.
     most_ = context.fragment_bytes == 0
                 ? ~std::uint64_t{0}
                 : std::max<std::uint64_t>(
@@ -287,7 +287,7 @@ class SharedSortedRegion final : public Region {
     step_ = Step::writing;
     return run_.chunks;
   }
-  /// Takes up `run_`, which is not all there is.
+  /// Starts `run_`, which is a part of the chunks.
   std::optional<Pass> next_run() {
     if (run_.fragments == 0) return std::nullopt;
     if (run_.fragments <= most_) return count(run_, Step::counting);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// sorted on a device: fragments are counted, written, sorted by pixel, and the maximum of each
-// pixel's segment is kept (paper 5, sections 3.1 to 3.4): no atomic operation on a pixel.
+// sorted on a device: counts, writes and sorts fragments by pixel and keeps the maximum of each
+// pixel's segment (paper 5, sections 3.1 to 3.4), without an atomic operation on a pixel.
 //
-// As in the paper an index is sorted, by radix, and the keys are gathered where they are reduced.
-// Fragments that do not fit into the memory together are sorted part by part, and each part raises
-// the surface.
+// As in the paper, an index is sorted, here by radix, and the reduction gathers the keys. Fragments
+// that do not fit into memory together are sorted in parts, each of which raises the surface.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +19,7 @@ struct KeyAt {
   const std::uint32_t* which;
   RASTRUM_HD std::uint64_t operator()(std::size_t k) const { return key[which[k]]; }
 };
-/// A segment has its pixel for itself.
+/// No other segment has this pixel.
 struct RaiseToMaximum {
   const std::uint32_t* element;
   const std::uint64_t* maximum;
@@ -32,15 +31,15 @@ struct RaiseToMaximum {
 };
 
 /// Work O(fragments · digits); 44 bytes a fragment. Counters: "fragments materialized", "sorts",
-/// "segments", a pixel of a sort each.
+/// "segments" (pixels of each sort).
 template <class Exec>
 class SortedOnDevice final : public DeviceVisibility<Exec> {
  public:
   explicit SortedOnDevice(FamilyFrame<Exec>&) {}
   void resolve(FamilyFrame<Exec>& frame, std::span<const Piece> pieces,
                std::span<const Block> blocks, std::uint64_t fragments) override {
-    // Its key, its element and index twice while they are sorted, its segment's, and a share of
-    // what sorts and reduces.
+    // Key, element and index twice while they are sorted, the segment's values, and a share of the
+    // scratch of sort and reduction.
     constexpr std::uint64_t kFragmentBytes = 8 + 2 * 8 + 12 + 8;
     each_written_part(frame, pieces, blocks, kFragmentBytes, [&](auto& element, auto& key) {
       const auto which = sort_by_pixel(frame, element);

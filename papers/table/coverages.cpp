@@ -13,8 +13,8 @@
 namespace rastrum::family {
 namespace {
 
-/// Bytes that a coverage on a PieceArray takes per piece: the piece twice (48 each, in its group
-/// and in the array), its index as filtered and as parted (4 each), and its place in one expansion
+/// Bytes per piece that a coverage on a PieceArray takes: the piece twice (48 each, in its group
+/// and in the array), its index as filtered and as partitioned (4 each), its place in one expansion
 /// at a time (8).
 constexpr int kIndexedPiece = 2 * 48 + 2 * 4 + 8;
 

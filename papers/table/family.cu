@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The coverages of the family on a device, and what draws a band by a row of both axes;
+// The coverages of the family on a device, and the drawer of a band by a row of both axes.
 // visibilities.cu has the other axis, so that two cores can compile. Tests compile these files as
-// C++, for the CPU.
+// C++ for the CPU.
 #include <algorithm>
 #include <array>
 #include <string>
@@ -52,12 +52,12 @@ struct AddSums {
   RASTRUM_HD void operator()(std::size_t k) const { to[k] += from[k]; }
 };
 
-/// A point of the table. Counters: "batches of primitives", and the rows' own.
+/// Draws by a point of the table. Counters: "batches of primitives", and the rows' own.
 class RowOnDevice final : public SurfaceDrawer {
  public:
   using Exec = parallel::Cuda;
 
-  /// Throws Error{invalid_argument} where a device has no row of that name.
+  /// Throws Error{invalid_argument} if a device has no row of that name.
   RowOnDevice(std::string_view coverage, std::string_view visibility, const Tuning& tuning)
       : tuning_(tuning),
         coverage_(*row_of(std::span(kCoverages<Exec>), coverage)),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The rows of both axes of the papers' rasterizers on a device, by their names. They are compiled
-// once, in family.cu and visibilities.cu.
+// The rows of both axes of the papers' rasterizers on a device, by name. family.cu and
+// visibilities.cu compile them once.
 #pragma once
 
 #include <cstdint>

@@ -13,7 +13,7 @@ class Grouped final : public Coverage {
 
   void draw(Frame& frame, std::uint64_t first, std::uint64_t last) override {
     const BinTable lists{{frame.view, kBinSize}, frame.visibility.hides && frame.hides};
-    // A view without a limit of its own always fits.
+    // set_up always returns groups here: the view has no limit of its own.
     const std::span<Group> groups =
         *groups_.set_up(frame.base, lists, frame.visibility.takes_fragments, first, last);
     frame.watch.lap(frame.stats, "setup and bin");

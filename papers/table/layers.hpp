@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// layers: every fragment of a pixel in order, for transparency and several samples a pixel. The
-// renderer's own (transparency/layers.hpp) as a region, for other coverages whose threads own
-// tiles.
+// layers: every fragment of a pixel in order, for transparency and several samples a pixel. This
+// makes the renderer's own method (transparency/layers.hpp) a region, for other coverages whose
+// threads own tiles.
 #pragma once
 
 #include <papers/axes/region.hpp>

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::string_view kReference = "reference", kBySize = "by-size";
 
-/// The row of that name; throws with what there is.
+/// The row of that name. The error for an unknown name lists the known ones.
 template <class Of>
 const Of& find_row(std::span<const Of> rows, std::string_view wanted, std::string_view what,
                    std::string known) {
@@ -52,7 +52,7 @@ const Visibility& visibility_of(const Row& row) {
               "leave the visibility to 'auto'");
 }
 
-/// Layers want a thread that owns a tile, and are a visibility themselves.
+/// Layers need a thread that owns a tile, and they replace the visibility.
 void check_layers(const CoverageRow& coverage, bool visibility_is_asked_for) {
   if (visibility_is_asked_for) refuse_visibility();
   if (coverage.owns_tiles) return;
@@ -67,12 +67,12 @@ void check_layers(const CoverageRow& coverage, bool visibility_is_asked_for) {
           .append(owners));
 }
 
-/// A coverage and a visibility, on the CPU's threads. The renderer's own path is the table's first
-/// point.
+/// A coverage and a visibility on the CPU's threads. The first point of the table is the renderer's
+/// own path.
 Ways ways_on_threads(const Row& row, MemoryAccount& memory) {
   const CoverageRow& coverage = coverage_of(row, "auto, reference");
   const Visibility& visibility = visibility_of(row);
-  // Refuses tunings that it does not take.
+  // Throws for tunings that the coverage does not take.
   static_cast<void>(coverage.make(row.tuning, memory));
   const bool is_first = coverage.name == coverages().front().name;
   const bool is_fast = is_first && visibility.name == visibilities().front().name &&
@@ -115,7 +115,7 @@ class WithoutLayers final : public raster::FrameDrawer {
 /// How a device draws a row: by a point of the table, or by by-size.
 struct OnCuda {
   std::string_view coverage, visibility;  ///< empty: by-size
-  std::string why;                        ///< auto took it, or the CPU draws it
+  std::string why;                        ///< why auto chose it, or why the CPU draws it
   bool is_the_cpus = false;
 };
 
@@ -134,7 +134,7 @@ OnCuda choose_on_cuda(const Row& row, MemoryAccount& memory) {
   if (row.rasterizer == "auto")
     return {"hybrid", visibility.name, "auto takes hybrid, for by-size has no other visibility"};
   const CoverageRow& coverage = coverage_of(row, "auto, reference, by-size");
-  // Refuses sizes of bins and tiles that the host refuses.
+  // Throws for sizes of bins and tiles that the host refuses too.
   static_cast<void>(coverage.make(row.tuning, memory));
   if (coverage.name == coverages().front().name)
     return {{}, {}, "'grouped' keeps its groups and bins in a core's cache: it is the CPU's", true};
@@ -197,7 +197,7 @@ Renderer make_renderer(const RendererOptions& options, const Row& row) {
   if (options.device == Device::automatic && choice.device == Device::cuda &&
       (row.rasterizer != "auto" || row.visibility != "auto"))
     choice = {Device::threads, "a rasterizer or a visibility of the CPU was asked for"};
-  // The reference is plain C++ on one thread, whatever else the machine could do.
+  // The reference is plain C++ on one thread on every machine.
   const bool plain = row.rasterizer == kReference;
   auto make = [row](const DrawerOptions& how, MemoryAccount& memory,
                     parallel::Threads* threads) -> std::unique_ptr<raster::FrameDrawer> {

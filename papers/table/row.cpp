@@ -29,7 +29,7 @@ class RowMethod final : public Method {
     Frame frame(under_way, tuning_, hierarchical_z_, visibility_, scratch_);
     coverage_->draw(frame, first, last);
   }
-  /// Regions have counted.
+  /// Drops the regions, whose counters hold the abandoned frame's work.
   void abandon() override {
     scratch_.shared.reset();
     scratch_.workers.for_each([](Worker& worker) { worker.region.reset(); });

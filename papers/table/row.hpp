@@ -11,9 +11,9 @@
 
 namespace rastrum::family {
 
-/// The arguments must outlive the method. Frames need threads. `hierarchical_z`: hidden parts are
-/// left out, where the row can do so; no pixel changes. Throws Error{invalid_argument} for a tuning
-/// that the coverage does not take.
+/// The arguments must outlive the method. Frames need threads. `hierarchical_z` leaves out hidden
+/// parts if the row can; no pixel changes. Throws Error{invalid_argument} for a tuning that the
+/// coverage does not take.
 [[nodiscard]] std::unique_ptr<Method> make_row(const CoverageRow& coverage,
                                                const Visibility& visibility, const Tuning& tuning,
                                                bool hierarchical_z, MemoryAccount& memory);

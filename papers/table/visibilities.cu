@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The visibilities of the family on a device, instantiated.
+// Instantiates the visibilities of the family on a device.
 #include <array>
 
 #include <papers/axes/atomic.cuh>

@@ -11,8 +11,8 @@
 namespace rastrum::test::animation_test {
 namespace {
 
-/// A square, left of the middle at rest, that animation 0 moves to the right within a second, and
-/// animation 1 grows by a morph target within two.
+/// A square, left of the middle at rest. Animation 0 moves it to the right within a second;
+/// animation 1 grows it by a morph target within two.
 std::string square() {
   GltfDocument d;
   d.floats({-2, -1, 0, -1, -1, 0, -1, 1, 0, -2, -1, 0, -1, 1, 0, -2, 1, 0}, "VEC3");
@@ -37,7 +37,7 @@ class Animations : public Program {
     Program::SetUp();
     write("s.gltf", square());
   }
-  /// The first and last column in which something is seen; ten columns are a unit.
+  /// The first and last covered column; ten columns are a unit.
   [[nodiscard]] std::pair<int, int> columns(const std::string& ids) const {
     const auto values = npy(ids).values<std::int64_t>();
     std::pair<int, int> range{kWidth, -1};
@@ -63,7 +63,7 @@ TEST_F(Animations, TimeIsAMomentOfAnAnimation) {
                                        {"--time 0", {20, 29}},
                                        {"--time 0.5", {35, 44}},
                                        {"--time 1", {50, 59}},
-                                       {"--time 7.5", {35, 44}},  // it begins again
+                                       {"--time 7.5", {35, 44}},  // the animation repeats
                                        {"--time 1 --animation 1", {20, 44}}})
     EXPECT_EQ(seen(extra), columns) << extra;
   const Outcome info = run("info s.gltf");
@@ -90,7 +90,7 @@ TEST_F(Animations, AlongAPathEachPictureHasItsTime) {
   EXPECT_EQ(columns("h2.npy"), Columns(35, 44));
 }
 
-// A lamp that walks from x = 0 to x = 3 within a second, in a file of its own.
+// A lamp moves from x = 0 to x = 3 within a second, in a file without other things.
 TEST_F(Animations, LightsGoWithTheirNodes) {
   GltfDocument d;
   d.floats({0, 1}, "SCALAR");

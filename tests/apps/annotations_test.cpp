@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Words and effects as options of the program: colours alone change, and what cannot be meant is
-// refused.
+// Text and effects as options of the program: only colours change, and nonsense is refused.
 #include <array>
 #include <set>
 #include <string>
@@ -29,7 +28,7 @@ TEST_F(Annotations, ChangeColoursAlone) {
   }
   EXPECT_FALSE(same_pixels(
       plain, drawn(kScene + Args{"--title", "α = 3°", "--caption", "one", "--caption", "two"})));
-  // Thread counts and instruction sets change nothing; timed frames are annotated, too.
+  // Thread counts and instruction sets change nothing, and timed frames are annotated too.
   std::set<std::string> pictures;
   for (const Args& how : std::vector<Args>{{}, "--threads 1", "--isa scalar", "--frames 2"}) {
     must(kScene + all + how + "-o a.png");
@@ -44,7 +43,7 @@ TEST_F(Annotations, FloatsAreAnnotatedToo) {
   EXPECT_NE(read("plain.npy"), read("a.npy"));
 }
 
-// As large and as small as numbers of a file are: the picture that is drawn unasked has occlusion.
+// The extremes of a file's coordinates. The default picture has occlusion.
 TEST_F(Annotations, OfScenesOfAnySize) {
   for (const std::string size : {"1e-30", "1e30"}) {
     write("size.obj", "v " + size + " 0 0\nv 0 " + size + " 0\nv 0 0 " + size + "\nf 1 2 3\n");
@@ -63,8 +62,7 @@ TEST_F(Annotations, TerrainHasWords) {
 }
 
 TEST_F(Annotations, SayWhatTheFontHasNot) {
-  // Bytes that are no UTF-8, control characters, marks that combine, what is written from the
-  // right.
+  // Invalid UTF-8, control characters, combining marks, right-to-left text.
   for (const auto& [option, text, code] : {std::array{"--title", "漢 a", "U+6F22"},
                                            {"--bar", "a\xff", "U+FFFD"},
                                            {"--bar", "\x01", "U+0001"},

@@ -121,7 +121,7 @@ TEST_F(WrongArguments, HelpAndVersionSucceed) {
   EXPECT_TRUE(holds(run("make --help").out, "torus_knot?p=2"));
 }
 
-// Which texts are colours, tests/core/color_test.cpp says.
+// tests/core/color_test.cpp tests which texts are colours.
 TEST(ParseColor, DigitsToDisplayValues) {
   EXPECT_EQ(cli::parse_color("", "#0033FF80"), (Vec4{0, 0.2F, 1, 128 / 255.0F}));
   EXPECT_EQ(cli::parse_color("", "#ffffff").w, 1.0F);

@@ -62,7 +62,7 @@ TEST(KeyCurve, MonotoneStaysBetweenNeighbours) {
       EXPECT_GE(curve.at(t), std::min(values[i], values[i + 1]) - 1e-12) << t;
       EXPECT_LE(curve.at(t), std::max(values[i], values[i + 1]) + 1e-12) << t;
     }
-  // The other kind overshoots here, or this test would say nothing.
+  // The other kind must overshoot here, or the test proves nothing.
   const KeyCurve free(kTimes, values, Interpolation::smooth, Tangent::curve);
   double most = 0;
   for (double t = 1; t <= 3; t += 0.01) most = std::max(most, free.at(t));
@@ -82,7 +82,7 @@ TEST(NumberedName, Numbers) {
 
 TEST(FrameTimes, CountsBothEnds) {
   EXPECT_EQ(cli::frame_times(0, 1, 25).size(), 26U);
-  EXPECT_EQ(cli::frame_times(0.1, 0.4, 10).size(), 4U);  // 3 / 10 is less than 0.4 - 0.1
+  EXPECT_EQ(cli::frame_times(0.1, 0.4, 10).size(), 4U);  // as floats, 3 / 10 < 0.4 - 0.1
   EXPECT_EQ(cli::frame_times(2, 2, 30), std::vector<double>{2});
   EXPECT_THROW(static_cast<void>(cli::frame_times(0, 1e9, 60)), Error);
 }
@@ -223,7 +223,7 @@ class FakeFfmpeg : public CameraPathFile {
     ::setenv("PATH", before_.c_str(), 1);
     CameraPathFile::TearDown();
   }
-  /// The film fails, and says so; what was there is there, and nothing else.
+  /// The film fails with this message. Existing files stay, and no other file appears.
   void expect_failure(const std::string& says, const Args& there) const {
     refused("render --look plain builtin:sphere --size 640x480 --path p.json -o v.mp4", says, 1);
     EXPECT_EQ(files(), there);

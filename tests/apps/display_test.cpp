@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum view` where there is no display.
+// `rastrum view` without a display.
 #include <cstdlib>
 
 #include "program.hpp"
@@ -19,7 +19,7 @@ class NoDisplay : public Program {
 };
 
 TEST_F(NoDisplay, EndsAtOnceAndSaysWhatToDo) {
-  // Files that do not exist: nothing is read before.
+  // The files do not exist: the display is checked first.
   for (const std::string args :
        {"view no-such-file.ply", "view --terrain --height no-such-file.png"}) {
     const Outcome r = shell("timeout 20 $RASTRUM " + args);

@@ -20,7 +20,7 @@ Args render(const Args& output) {
   return "render builtin:soup?count=500 --size 200x200" + output;
 }
 
-/// Eight of them would write one file.
+/// Otherwise eight ranks would write the same file.
 TEST_F(Failure, OneOfSeveralRanksWritesNothing) {
   const std::string render = R"("$RASTRUM" render builtin:boxes --size 20x20 -o p.png)";
   for (const std::string name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"}) {
@@ -56,7 +56,7 @@ TEST_F(Failure, DiskFullLeavesTheOldFile) {
 }
 
 TEST_F(Failure, OfOneOutputLeavesNoneOfThem) {
-  // The picture fits, what comes after it does not.
+  // The picture fits, the next output does not.
   const Outcome r = run("render builtin:sphere --size 64x64 -o p.png --ids i.npy --stats s.json",
                         {.file_bytes = 20000});
   EXPECT_EQ(r.status, 1) << r.err;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Obstacles of a run: no room for temporary files, messages that quote whole files, camera paths
+// Obstacles of a run: no space for temporary files, messages that quote whole files, camera paths
 // without a direction, limits that would change the look.
 #include "program.hpp"
 
@@ -45,7 +45,7 @@ TEST_F(Faults, MessagesQuoteTenMegabytesInShort) {
     said({"render", "builtin:sphere", "--path", file, "-o", "f%d.png"}, file);
     said({"terrain", "--function", "noise", "--path", file, "-o", "f%d.png"}, file);
   }
-  // A shortened quotation of a command line keeps the message's end, which says what to do.
+  // A long command line is quoted in part, so that the message keeps its end, the remedy.
   const Outcome r = run({"render", "builtin:sphere", "--view", std::string(100'000, 'v')});
   EXPECT_EQ(r.status, 2);
   EXPECT_LT(r.err.size(), 3000U);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `--image NAME=FILE` and `--clip-plane`: the program's way to what a library user finds in
-// Targets.
+// `--image NAME=FILE` and `--clip-plane`, the program's options for the library's Targets.
 #include <string>
 
 #include <rastrum/render.hpp>

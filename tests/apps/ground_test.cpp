@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum terrain` under lights of its own and with heights as numbers: the pictures that the
-// library draws of the same choice, and what is refused with what to do instead.
+// `rastrum terrain` with lights and with heights as numbers: its pictures equal the library's, and
+// refusals name a remedy.
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -68,7 +68,7 @@ TEST_F(TerrainGround, LightsTakeThePlaceOfTheSun) {
   const Args shaded = lamps + "--shadows sharp";
   ground.shadows = terrain::Shadows::sharp;
   EXPECT_TRUE(same_pixels(drawn_with(shaded), ground_under(lit_colors(map_, ground)).color));
-  // Without colours of its own it has them by height.
+  // Without a colour map the heights give the colours.
   EXPECT_TRUE(same_pixels(drawn_with(shaded, false),
                           ground_under(lit_colors(HeightMap{map_.heights, {}}, ground)).color));
   EXPECT_TRUE(same_pixels(drawn_with("--lights default"), ground_under(map_.colors).color));
@@ -122,7 +122,7 @@ TEST_F(TerrainGround, HeightsAreNumbersWithABar) {
   overlay::draw_scalar_bar({.color8 = expected.color}, bar, overlay::look_on({}));
   EXPECT_TRUE(same_pixels(drawn_with(numbers + "--bar Height --bar-unit m --scalars height", false),
                           expected.color));
-  // As the file has them: at half the height the same colours and numbers.
+  // By the file's values: at half the height, colours and numbers are the same.
 
   HeightMap half{map_.heights, {}};
   for (float& h : half.heights.pixels()) h *= 0.5F;
@@ -131,7 +131,7 @@ TEST_F(TerrainGround, HeightsAreNumbersWithABar) {
   TerrainPainter(options_).render(
       terrain::Terrain(HeightMap{half.heights, lit_colors(half, ground)}), camera_, low.targets());
   EXPECT_TRUE(same_pixels(drawn_with(numbers + "--height-scale 0.5", false), low.color));
-  // Functions, too, in the sun.
+  // Functions as terrain, also in the sun.
   const Image<Rgba8> noise = drawn("terrain --function noise --cmap gray --size 96x64");
   for (const Rgba8 c : noise.pixels())
     ASSERT_TRUE(c == terrain::kSky || (c.r == c.g && c.g == c.b));

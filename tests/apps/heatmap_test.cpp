@@ -18,7 +18,7 @@ TEST(HeatRamp, GetsLighterFromEndToEnd) {
   const auto& ramp = cli::heat_ramp();
   for (std::size_t i = 32; i < ramp.size(); i += 32)
     EXPECT_GT(luminance(ramp[i]), luminance(ramp[i - 32])) << i;
-  // The first colour is seen beside black, the last is nearly white.
+  // The first colour is distinct from black, the last is nearly white.
   EXPECT_GT(luminance(ramp.front()), 25);
   EXPECT_GT(luminance(ramp.back()), 220);
 }
@@ -51,7 +51,7 @@ TEST(MakeHeatmap, NothingDrawn) {
 using HeatmapOption = Program;
 
 TEST_F(HeatmapOption, SumOfThePictureIsTheFragments) {
-  // `sorted` draws what is hidden too, as the heat map does: nothing is left out of its statistics.
+  // `sorted`, like the heat map, draws hidden fragments too, so its statistics count all.
   const std::string said = must(
       "render --look plain builtin:boxes?count=3 builtin:torus_knot?x=1.5,y=1.5 --size 160x120 "
       "--visibility sorted --heatmap h.png --stats s.json");

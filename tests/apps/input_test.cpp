@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// INPUT…: several at once, builtins and where they stand, materials, cameras, what readers say.
+// INPUT…: several at once, builtins and their places, materials, cameras, messages of readers.
 #include <algorithm>
 #include <set>
 
@@ -16,7 +16,7 @@ namespace {
 
 class Inputs : public Program {
  protected:
-  /// Which ids are seen left and right of the middle of an 80 × 40 picture.
+  /// The visible ids left and right of the middle of an 80 × 40 picture.
   struct Halves {
     std::set<std::int64_t> left, right;
   };

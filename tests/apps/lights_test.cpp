@@ -28,7 +28,7 @@ TEST_F(LightOptions, LightThePictureAndNothingElse) {
 }
 
 TEST_F(LightOptions, EnvironmentsAreFilesOrOurOwn) {
-  // A picture of one grey, of the size that the format's runs begin with.
+  // A picture of one grey, with the header and runs of the format.
   std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 32 +X 64\n";
   for (int i = 0; i < 32 * 64; ++i) hdr += "\x60\x60\x60\x80";
   write("grey.hdr", hdr);
@@ -52,10 +52,10 @@ TEST_F(LightOptions, StudioIsWhatItSays) {
   };
   const Image<Rgba8> said = draw("--view iso --fov 30 --lights studio --occlusion --samples 4");
   EXPECT_TRUE(same_pixels(draw("--look studio"), said));
-  // A command line that asks for nothing but a picture gets the studio look, too …
+  // A command line that asks only for a picture also gets the studio look …
   EXPECT_TRUE(same_pixels(draw({}), said));
   EXPECT_FALSE(same_pixels(draw("--look plain"), said));
-  // … except for options that say otherwise. The last is the picture of before, by name.
+  // … unless options say otherwise. The last row is the plain picture, by its name.
   for (const auto& [options, same] :
        {std::pair{"--look studio --view top --samples 1 --lights headlight",
                   "--look plain --view top --lights headlight --occlusion"},
@@ -65,10 +65,9 @@ TEST_F(LightOptions, StudioIsWhatItSays) {
     EXPECT_TRUE(same_pixels(draw(options), draw(same))) << options;
 }
 
-// The default pictures of the time before there were lights to choose. Their digests were printed
-// by `rastrum render builtin:SHAPE --size 120x90 --hash` of 9d2794e (2026-11-23), with and without
-// `--fit sphere`; those of spheres and tube by the program of 2026-11-28, since when a fit is not
-// rounded to float32.
+// Pins the default pictures from before lights could be chosen. The digests are those of `rastrum
+// render builtin:SHAPE --size 120x90 --hash` of 9d2794e (2026-11-23), with and without `--fit
+// sphere`; spheres and tube are of 2026-11-28, when fits stopped rounding to float32.
 TEST_F(LightOptions, ThePictureOfBeforeIsThereByItsName) {
   const struct {
     std::string shape, sphere, tight;
@@ -95,7 +94,7 @@ TEST_F(LightOptions, ThePictureOfBeforeIsThereByItsName) {
   }
 }
 
-// Numbers, and frames that are compared, have one sample and the fixed light.
+// Frames with numbers, and frames for comparison, have one sample and the fixed light.
 TEST_F(LightOptions, MoreThanAPictureIsPlain) {
   const Args teapot("render builtin:teapot --size 120x90");
   const Image<Rgba8> plain = drawn(teapot + "--look plain --view iso --fov 30");

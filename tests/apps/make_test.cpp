@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum make`: what is written is the shape, in order, where it was placed.
+// `rastrum make` writes the shape in order, at its place.
 #include <rastrum/io.hpp>
 #include <rastrum/shapes.hpp>
 
@@ -57,9 +57,9 @@ TEST_F(Make, RefusesWhatItCannotDo) {
 
 TEST(Flatten, InstancesInOrderWithTheirMatrices) {
   Scene scene = scene_of(shapes::sphere(3, 4));
-  scene.meshes[0].texcoords = {};  // numbered apart from the positions, for the seam
+  scene.meshes[0].texcoords = {};  // numbered apart from the positions, because of the seam
   Mat4d m = Mat4d::identity();
-  m.m[0][0] = 2;  // a stretch: normals lean against it
+  m.m[0][0] = 2;  // a stretch tilts normals
   m.m[0][3] = 10;
   scene.instances.push_back({0, m});
   const Mesh& sphere = scene.meshes[0];

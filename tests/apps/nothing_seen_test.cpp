@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An empty picture says that it is empty, why, and what would show something; and what it says
-// helps.
+// An empty picture comes with its reason and a remedy, and the remedy works.
 #include <algorithm>
 #include <array>
 
@@ -12,8 +11,8 @@ namespace {
 
 class NothingSeen : public Program {
  protected:
-  /// Renders what shows nothing: a warning with this reason and this remedy, and status 0. With
-  /// `cure` in the place of the options something is seen, and nothing said of it.
+  /// Renders an empty picture: a warning with this reason and this remedy, and status 0. With
+  /// `cure` instead of the options, something is visible and there is no warning.
   void expect(const Args& inputs, const Args& options, const std::string& reason,
               const std::string& remedy, const Args& cure) const {
     const std::string said = must(command(inputs, options));
@@ -30,7 +29,7 @@ class NothingSeen : public Program {
   static Args command(const Args& inputs, const Args& options) {
     return "render --look plain -o p.png --size 40x30" + inputs + options;
   }
-  /// A triangle as write_triangle's with a material.
+  /// write_triangle's triangle with a material.
   void write_gltf(const std::string& material) const {
     GltfDocument d;
     d.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
@@ -86,14 +85,14 @@ TEST_F(NothingSeen, CutOutByItsMaterial) {
 }
 
 TEST_F(NothingSeen, EdgeOn) {
-  // A floor, as the camera that looks along -z sees it.
+  // A floor that the camera along -z sees edge-on.
   write("floor.obj", "v 0 0 0\nv 4 0 0\nv 4 0 4\nv 0 0 4\nf 1 2 3 4\n");
   expect("floor.obj", {}, "all 2 triangles are seen edge-on",
          "look from elsewhere, as with --eye 4.263,3.394,6.525", "--eye 4.263,3.394,6.525");
 }
 
 TEST_F(NothingSeen, ThinnerThanAPixel) {
-  // A ribbon of 4 by 1e-3 as its front is seen: no eye elsewhere would see more of it.
+  // A ribbon of 4 by 1e-3, seen from its front: no other eye would see more of it.
   write("wire.obj", "v -2 0 0\nv 2 0 0\nv 2 1e-3 0\nv -2 1e-3 0\nf 1 2 3 4\n");
   expect("wire.obj", "--eye 0.1,0.3,5 --target 0,0,0", "all 2 triangles are thinner than a pixel",
          "bring --eye nearer", "--eye 0,0,0.02 --target 0,0,0");

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every option of `rastrum render` once, by its effect: the picture is the one that the library
-// draws with the same choice.
+// Each option of `rastrum render` once: the picture equals the library's with the same choice.
 #include <algorithm>
 
 #include <cmath>
@@ -23,8 +22,8 @@ constexpr int kWidth = 72, kHeight = 56;
 
 class Options : public Program {
  protected:
-  /// The program's picture of the boxes with `extra` options, and its depths, which alone show the
-  /// camera's planes, against the library's.
+  /// Compares the picture of the boxes with `extra` options with the library's, and also the
+  /// depths, since only they show the camera's planes.
   void expect(const Args& extra, const Camera& camera) const {
     const Drawn expected = draw(boxes(), camera, render_);
     must("render --look plain builtin:boxes?count=2 -o p.png --depth d.npy --size 72x56" + extra);
@@ -142,14 +141,14 @@ TEST_F(Options, Cull) {
         cull + " -o " + cull + ".png");
     drawn.push_back(json("s.json")["triangles"]["drawn"].get<std::uint64_t>());
   }
-  // Three faces of a box are towards the eye.
+  // Three faces of a box face the eye.
   EXPECT_EQ(drawn, (std::vector<std::uint64_t>{12, 6, 6}));
   EXPECT_TRUE(same_pixels(png("none.png"), png("back.png")));
   EXPECT_FALSE(same_pixels(png("none.png"), png("front.png")));
 }
 
 TEST_F(Options, Normals) {
-  // A coarse sphere whose file normals, vertex normals and face normals are all different.
+  // A coarse sphere whose normals from the file, by vertex and by face all differ.
   Mesh mesh = shapes::sphere(5, 7);
   must("make sphere?rings=5,segments=7 -o s.ply");
   const auto check = [&](const std::string& choice) {
@@ -166,7 +165,7 @@ TEST_F(Options, Normals) {
   EXPECT_FALSE(same_pixels(file, face));
   EXPECT_FALSE(same_pixels(vertex, face));
   EXPECT_FALSE(same_pixels(file, vertex));
-  // Where it is asked for, creases take the place of the file's.
+  // --crease replaces the file's normals.
   mesh.normals = crease_normals(mesh.positions, mesh.indices, 50);
   check("crease --crease 50");
 }
@@ -218,7 +217,7 @@ TEST_F(Options, MachineChoicesReachTheStatisticsAndLeaveThePictureAlone) {
   for (const auto& [limit, bytes] :
        {std::pair<std::string, int>{"8000000", 8000000}, {"8000K", 8000 * 1024}, {"8M", 8 << 20}})
     EXPECT_LE(stats("--threads 2 --memory-limit " + limit)["peak_bytes"], bytes);
-  // So small a frame would keep to those by itself: what is too little is refused by its bytes.
+  // A frame this small fits any limit, so limits that are too small are refused by their size.
   for (const auto& [limit, bytes] :
        {std::pair<std::string, std::string>{"1000", "1000"}, {"1K", "1024"}, {"1M", "1048576"}})
     refused(boxes + "-o p.png --memory-limit " + limit, "a memory limit of " + bytes + " bytes", 1);
@@ -251,7 +250,7 @@ TEST_F(Options, AutoTakesADeviceAndSaysWhy) {
       "render --look plain builtin:boxes?count=2 --size 72x56 --device auto --stats auto.json -o "
       "auto.png");
   const auto s = json("auto.json");
-  EXPECT_EQ(s["device"], "threads");  // with a GPU too: the picture is small
+  EXPECT_EQ(s["device"], "threads");  // with a GPU too, because the picture is small
   const parallel::CudaStatus status = parallel::cuda_status();
   const std::string why = s["device_why"];
   EXPECT_TRUE(holds(why, status.usable ? status.name : status.why_not));

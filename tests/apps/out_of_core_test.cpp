@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum render` of a file that is mapped: the bytes that are written are those of one that is
-// read, and what cannot be drawn so is refused by name.
+// `rastrum render` of a mapped file writes the same bytes as of a file in memory.
+// Refusals name the option or the file.
 #include <string>
 
 #include <rastrum/mesh.hpp>
@@ -74,7 +74,7 @@ TEST_F(OutOfCoreProgram, ALargePictureIsDrawnInBandsOfRows) {
 }
 
 TEST_F(OutOfCoreProgram, ReadsASmallFileOfManyNodes) {
-  // A quarter of the limit, so that it may be large, whose nodes alone take more than the limit.
+  // The file is a quarter of the limit, so it may be large, but its nodes alone exceed the limit.
   Mesh mesh;
   mesh.positions.resize((std::size_t{17} << 20) / 24);
   mesh.positions[1] = {1, 0, 0};

@@ -55,7 +55,7 @@ TEST_F(Output, PngNpyAndExrAgree) {
 
 TEST_F(Output, AreTheLibrarysImages) {
   const Drawn e = expected();
-  // One pass, and with statistics the timed pass and the one after it, give the same.
+  // One pass, and with statistics the timed pass and the next one, give the same.
   for (const Args& timing : {Args{}, Args("--frames 2")}) {
     Args outputs = "-o p.npy --depth d.npy --ids i.npy" + timing;
     render(outputs);
@@ -72,7 +72,7 @@ TEST_F(Output, AreTheLibrarysImages) {
   EXPECT_EQ(std::ranges::count(e.ids.pixels(), -1), std::ranges::count(e.depth.pixels(), 0.0F));
 }
 
-// A line for each picture that is written, or of the 8-bit colours alone.
+// A line for each written picture, or only for the 8-bit colours.
 TEST_F(Output, HashesAreTheLibrarysDigests) {
   const Drawn e = expected();
   const auto lines = [&](Args more) {

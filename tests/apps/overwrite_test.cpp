@@ -86,7 +86,7 @@ TEST_F(Overwrite, OfAFileThatAnInputOrAnOptionNamesIsRefused) {
 
 TEST_F(Overwrite, OfANumberedPictureIsRefusedBeforeTheFirstIsWritten) {
   refused("render t.obj --turntable 3 -o turn_%d.png", "-o", "turn_2.png");
-  // Without a picture of that number it works.
+  // It works if no picture has that number.
   must("render t.obj --turntable 2 --size 8x8 -o turn_%d.png");
 }
 

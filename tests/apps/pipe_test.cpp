@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Standard output and input as files: what comes out of a pipe is what the file would hold.
+// Standard output and input as files: a pipe carries the bytes of the file.
 #include <array>
 #include <cstdlib>
 
@@ -119,7 +119,7 @@ TEST_F(Pipes, AReaderThatHasGoneEndsTheProgramQuietly) {
   EXPECT_EQ(r.err, "");
   EXPECT_EQ(read("s"), "141\n") << "128 + SIGPIPE, as of other programs";
   EXPECT_EQ(files(), Args("s")) << "all outputs or none";
-  // Whoever has it ignored gets an error instead, as of other programs.
+  // With the signal ignored there is an error instead, as with other programs.
   const Outcome ignored = shell("trap '' PIPE; ($RASTRUM render builtin:sphere --quiet" + args +
                                 "; echo $? >s) | head -c 6");
   EXPECT_TRUE(holds(ignored.err, "standard output: cannot be written: Broken pipe"));

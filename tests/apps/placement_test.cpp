@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// INPUT@name=value,…: where an input stands and how it looks.
+// INPUT@name=value,…: the place and look of an input.
 #include "parse/input_spec.hpp"
 
 #include <algorithm>
@@ -48,14 +48,14 @@ TEST(ParseInput, RefusesWhatIsNone) {
        {"a.ply@x=", "a.ply@x=1,", "a.ply@x=1,y", "a.ply@size=3", "a.ply@scale=0", "a.ply@opacity=2",
         "a.ply@color=blau", "builtin:sphere@", "builtin:sphere@rings=3"})
     EXPECT_THROW((void)cli::parse_input(text), cli::UsageError) << text;
-  // No list of values behind it, and no file before it: a name that does not exist.
+  // Without a list of values after the @ and a file before it, the text is a file's name.
   EXPECT_EQ(cli::parse_input("me@home.ply").source, "me@home.ply");
 }
 
 TEST(Placement, ScalesThenTurnsAboutXYZThenMoves) {
   expect_near(cli::Placement{}.matrix(), Mat4d::identity(), 0);
   const cli::Placement p{4, 5, 6, 3, 90, 90, 0};
-  // (1, 0, 0) → 3 → about x the same → about y to −z; (0, 1, 0) → z → x.
+  // (1, 0, 0): scaled to 3, about x the same, about y to −z. (0, 1, 0): to z, to x.
   const Mat4d m{{{0, 3, 0, 4}, {0, 0, -3, 5}, {-3, 0, 0, 6}, {0, 0, 0, 1}}};
   expect_near(p.matrix(), m, 0);
 }
@@ -73,7 +73,7 @@ TEST_F(PlacedInputs, AFileStandsWhereABuiltinWould) {
   const Image<Rgba8> placed = drawn({"builtin:boxes?count=1", "t.ply@" + at});
   EXPECT_TRUE(same_pixels(placed, drawn({"builtin:boxes?count=1", "builtin:teapot?n=3," + at})));
   EXPECT_FALSE(same_pixels(placed, drawn({"builtin:boxes?count=1", "t.ply"})));
-  // make and info read inputs as render does.
+  // make and info read inputs like render.
   must({"make", "t.ply@" + at, "-o", "placed.ply"});
   must({"make", "teapot?n=3@" + at, "-o", "shape.ply"});
   EXPECT_EQ(read("placed.ply").size(), read("shape.ply").size());
@@ -93,13 +93,13 @@ TEST_F(PlacedInputs, AFileThatIsCalledSoIsMeant) {
 }
 
 TEST_F(PlacedInputs, OpacityIsOfOneInput) {
-  // A wall before a wall: what lies behind the first is seen through it.
+  // A wall in front of a wall: the first one lets the second one show through.
   write("w.obj", "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n");
   const Image<Rgba8> glass = drawn({"w.obj@opacity=0.25"});
   EXPECT_EQ(glass(48, 32).a, 64);
   const Image<Rgba8> both = drawn({"w.obj@opacity=0.25,z=0.5", "w.obj"});
   EXPECT_EQ(both(48, 32).a, 255);
-  // It is --opacity, for this input alone; the two are multiplied.
+  // The same as --opacity, for this input alone; the two are multiplied.
   EXPECT_TRUE(same_pixels(glass, drawn("w.obj --opacity 0.25")));
   EXPECT_TRUE(same_pixels(drawn("w.obj@opacity=0.5 --opacity 0.5"), glass));
   EXPECT_EQ(drawn({"w.obj@color=#ff000080"})(48, 32).a, 128);
@@ -120,7 +120,7 @@ TEST_F(PlacedInputs, ColorIsOfOneInput) {
     EXPECT_GT(red, 300);
     EXPECT_GT(blue, 300);
   }
-  // The colour that was asked for is seen unchanged.
+  // The colour appears unchanged.
   EXPECT_EQ(drawn("builtin:sphere@color=#88aaff --shader flat")(48, 32),
             (Rgba8{0x88, 0xaa, 0xff, 255}));
 }
@@ -141,7 +141,7 @@ TEST_F(PlacedInputs, ColorTakesThePlaceOfTheFiles) {
 }
 
 TEST_F(PlacedInputs, ThoseThatSayNothingLookAsBefore) {
-  // A look is no material of a file: the shader stays phong.
+  // A look is not a file's material, so the shader stays phong.
   const Image<Rgba8> alone = drawn({"builtin:teapot?n=3", "builtin:boxes?count=1,x=9"});
   const Image<Rgba8> beside =
       drawn({"builtin:teapot?n=3", "builtin:boxes?count=1,x=9,color=#00ff00"});

@@ -26,7 +26,7 @@ namespace rastrum::test {
 namespace fs = std::filesystem;
 namespace {
 
-/// In the child: becomes the command, or ends with 127.
+/// In the child: executes the command, or exits with 127.
 [[noreturn]] void become(const Args& command, Limits limits, const fs::path& folder,
                          const fs::path& out, const fs::path& err) {
   std::vector<char*> argv;
@@ -120,7 +120,7 @@ void Program::expect_film(const Args& args, int pictures, const std::string& wid
       sum += std::abs(a.pixels()[k].r - b.pixels()[k].r) +
              std::abs(a.pixels()[k].g - b.pixels()[k].g) +
              std::abs(a.pixels()[k].b - b.pixels()[k].b);
-    // Compressed, with a quarter of the colours: near on the whole, and not another picture.
+    // Compressed and with a quarter of the colours: close on average, and the same picture.
     EXPECT_LT(sum / static_cast<double>(a.pixels().size()), most) << i;
   }
 }

@@ -23,7 +23,7 @@
 
 namespace rastrum::test {
 
-/// Words of a command line: those of a list as they are, those of a text between its blanks.
+/// Words of a command line: a list's items as they are, a text's words between blanks.
 struct Args : std::vector<std::string> {
   Args() = default;
   Args(std::initializer_list<std::string> words) : vector(words) {}
@@ -43,11 +43,11 @@ inline std::ostream& operator<<(std::ostream& out, const Args& args) {
 }
 
 struct Outcome {
-  int status = -1;  ///< 128 + signal where it did not exit
+  int status = -1;  ///< 128 + signal if it was killed
   std::string out, err;
 };
 
-/// Limits that the system sets the program.
+/// Limits of the system for the program.
 struct Limits {
   long file_bytes = -1;  ///< writes beyond it fail, as on a full disk
   bool stdout_full = false;
@@ -55,30 +55,30 @@ struct Limits {
 
 class Program : public testing::Test {
  protected:
-  /// Runs `rastrum args…` with the test's directory as the current one.
+  /// Runs `rastrum args…` in the test's directory.
   [[nodiscard]] Outcome run(const Args& args, Limits limits = {}) const;
-  /// Runs a script of sh's in that directory, in which $RASTRUM is the program.
+  /// Runs a script of sh in the test's directory. $RASTRUM is the program.
   [[nodiscard]] Outcome shell(const std::string& script) const;
-  /// Begins `rastrum args…`; wait() gives its outcome, as run() does.
+  /// Starts `rastrum args…`; wait() returns its outcome.
   [[nodiscard]] pid_t start(const Args& args) const;
   [[nodiscard]] Outcome wait(pid_t program) const;
-  /// The same, which must succeed; returns what it said on stderr.
+  /// Runs it and expects success. Returns its stderr.
   std::string must(const Args& args) const;
-  /// The same, which must end with `status` and say `part`; returns what it said on stderr.
+  /// Runs it and expects `status` and `part` in its stderr, which it returns.
   std::string refused(const Args& args, const std::string& part, int status = 2) const;
-  /// The picture that args… -o FILE draws.
+  /// Returns the picture of `args… -o FILE`.
   [[nodiscard]] Image<Rgba8> drawn(const Args& args) const;
-  /// The picture of args… along a path of so many pictures, as a film, is near those that it writes
-  /// one by one: a pixel's channels together by less than `most`. Skipped without ffmpeg.
+  /// Compares a film of args… along a path of `pictures` pictures with the single pictures: on
+  /// average, a pixel's channels differ by less than `most` together. Skipped without ffmpeg.
   void expect_film(const Args& args, int pictures, const std::string& width_height,
                    double most) const;
-  /// Runs the line of a file beside a screenshot, which writes a picture.
+  /// Runs the command line in the file beside a screenshot, which writes a picture.
   void run_line(const std::string& line) const;
 
   [[nodiscard]] std::filesystem::path path(const std::string& name) const {
     return folder_.path(name);
   }
-  /// Beside the folder, so that the folder holds the program's own files alone.
+  /// A path beside the folder, so that the folder has only the program's own files.
   [[nodiscard]] std::filesystem::path beside(const std::string& ending) const {
     return path("").parent_path().string() + ending;
   }
@@ -97,7 +97,7 @@ class Program : public testing::Test {
       std::memcpy(v.data(), data.data(), v.size() * sizeof(T));
       return v;
     }
-    /// Whether these are the image's bytes.
+    /// Whether the array equals the image.
     template <class T>
     [[nodiscard]] bool holds(const Image<T>& image) const {
       const auto pixels = image.pixels();
@@ -105,7 +105,7 @@ class Program : public testing::Test {
     }
   };
   [[nodiscard]] Npy npy(const std::string& name) const;
-  /// The channels of an EXR, one plane each in the order named, as float32.
+  /// The channels of an EXR as float32 planes, in the given order.
   [[nodiscard]] std::vector<std::vector<float>> exr(const std::string& name,
                                                     const Args& channels) const;
 

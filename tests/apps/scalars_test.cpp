@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers as colours by options of the program: of files, of places, with a bar, and what is
-// refused.
+// Numbers as colours by the program's options: of files, of positions, with a bar, and refusals.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -29,7 +28,7 @@ TEST_F(Scalars, OfAFileAreDrawnAndListed) {
          "--output a.png");
     return png("a.png");
   };
-  // Below the diagonal are the numbers, above it the corner that has none.
+  // Numbers below the diagonal; above it the corner without one.
   const Image<Rgba8> heat = drawn("--scalars heat --cmap gray --nan-color #ff0000");
   EXPECT_EQ(heat(20, 10), (Rgba8{255, 0, 0, 255}));
   EXPECT_EQ(heat(40, 58).r, heat(40, 58).g);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// --turntable, and what of a camera stands in --stats and --depth-unit.
+// --turntable, and the camera in --stats and --depth-unit.
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -12,7 +12,7 @@ namespace {
 using Sequences = Program;
 
 TEST_F(Sequences, ATurntableTurnsTheSceneAndKeepsItsSize) {
-  // A flag beside the axis: seen from −z it is on the other side, at quarters it is edge on.
+  // A flag beside the axis: from −z it is on the other side, at quarter turns edge-on.
   write("f.obj", "v 1 -1 0\nv 3 -1 0\nv 3 1 0\nv 1 1 0\nf 1 2 3 4\nv -3 0 0\nv -3 0 0\nf 5 6 6\n");
   const std::string said = must(
       "render --look plain f.obj --turntable 4 -o t%02d.png --ids i%02d.npy --stats s.json --size "
@@ -32,7 +32,7 @@ TEST_F(Sequences, ATurntableTurnsTheSceneAndKeepsItsSize) {
   EXPECT_NEAR(right.first, 119 - left.second, 1);
   EXPECT_NEAR(right.second, 119 - left.first, 1);
   EXPECT_EQ(columns("i01.npy").second, -1) << "edge on";
-  // All pictures have the size that one fit for all angles gives, and one camera.
+  // All pictures share the size of a fit for all angles, and one camera.
   const auto cameras = json("s.json")["cameras"];
   ASSERT_EQ(cameras.size(), 4U);
   for (const auto& c : cameras) EXPECT_EQ(c, cameras[0]);
@@ -51,7 +51,8 @@ TEST_F(Sequences, TheFirstPictureOfATurntableIsThePlainOne) {
 }
 
 TEST_F(Sequences, ATurntableOfAnOwnCameraCutsNothingOff) {
-  // The scene stands off its target: its near plane must serve when it comes to the front.
+  // The scene is away from its target: the near plane must also fit when the scene comes to the
+  // front.
   must(
       "render --look plain builtin:sphere?x=3 --eye 0,0,9 --target 0,0,0 --turntable 8 --ids "
       "i%d.npy --stats s.json --size 64x64");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ended in the middle of its work the program leaves nothing half written, and the shell sees which
-// signal it was. Nothing here waits for a time to pass: an output that is a pipe without a reader
-// holds the program where the other outputs are written and not yet seen.
+// A program that is killed leaves no partial file, and the shell sees the signal. No test depends
+// on time: one output is a pipe without a reader, which holds the program while other outputs are
+// written but not yet in place.
 #include <sys/stat.h>
 #include <sys/wait.h>
 
@@ -25,11 +25,11 @@ class Signals : public Program {
   void make_pipe(const std::string& name) const {
     ASSERT_EQ(::mkfifo(path(name).c_str(), 0666), 0);
   }
-  /// The picture is written, the pipe not opened.
+  /// Starts a run whose picture is written while its pipe is not yet opened.
   [[nodiscard]] pid_t start_held() const {
     return start("render builtin:sphere --size 64x64 -o p.png --depth d.npy --ids held.npy");
   }
-  /// Sends it a signal once so many files are there, its pipe among them, and gives its outcome.
+  /// Sends a signal once `count` files exist, the pipe included, and returns the outcome.
   [[nodiscard]] Outcome ended_by(int number, pid_t program, std::size_t count = 3) const {
     EXPECT_TRUE(comes_to(count, program));
     ::kill(program, number);
@@ -37,8 +37,8 @@ class Signals : public Program {
     EXPECT_EQ(r.status, 128 + number);
     return r;
   }
-  /// Waits until so many files are there, its pipe among them. False: it has ended, or nothing
-  /// comes any more; then it is killed.
+  /// Waits until `count` files exist, the pipe included. False: the program has ended, or it hung
+  /// and was killed.
   [[nodiscard]] bool comes_to(std::size_t count, pid_t program) const {
     constexpr std::chrono::seconds kPatience{100};
     const auto end = std::chrono::steady_clock::now() + kPatience;
@@ -80,7 +80,7 @@ TEST_F(Signals, LeaveNoVideo) {
 }
 
 TEST_F(Signals, WhatWasIgnoredStaysIgnored) {
-  // As nohup does.
+  // Like nohup.
   const Outcome r = shell(
       "trap '' HUP; $RASTRUM render builtin:sphere --size 64x64 -o p.png --ids held.npy & "
       "while [ $(ls -A | wc -l) -lt 2 ]; do :; done; kill -HUP $!; cat held.npy >/dev/null; "

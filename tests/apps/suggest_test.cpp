@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// "Did you mean", and what leads to it on the command line.
+// "Did you mean", and the typing errors that lead to it.
 #include <rastrum/core/nearest_word.hpp>
 
 #include <vector>
@@ -18,7 +18,7 @@ TEST(NearestWord, IsTheOneThatWasMeant) {
            {"rendor", "render"},   // changed
            {"redner", "render"},   // swapped
            {"RENDER", "render"},
-           {"terr", "terrain"},  // begun
+           {"terr", "terrain"},  // an abbreviation
            {"terain", "terrain"},
            {"veiw", "view"},
            {"inof", "info"},

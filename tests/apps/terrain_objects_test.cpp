@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum terrain --mesh --sprite`: the picture is the library's of the same objects, standing
-// where the command line says; on the ground without a height; along paths; what cannot stand is
+// `rastrum terrain --mesh --sprite`: the picture equals the library's with the same objects, placed
+// by the command line, on the ground if no height is given, and along paths. Invalid places are
 // refused.
 #include <algorithm>
 #include <cmath>
@@ -50,7 +50,7 @@ class TerrainObjectsProgram : public ProgramOnHills {
     Image<Rgba8> color{kWidth, kHeight};
     Image<float> depth{kWidth, kHeight};
   };
-  /// The library's picture; without a scene that of the terrain alone.
+  /// The library's picture; without a scene only the terrain.
   [[nodiscard]] Drawn drawn(const Scene* scene, RenderOptions how = {},
                             const std::vector<std::size_t>& facing = {}) const {
     Drawn d;
@@ -87,7 +87,7 @@ class TerrainObjectsProgram : public ProgramOnHills {
 const std::string kBox = "builtin:boxes?count=1,fill=1";
 
 TEST_F(TerrainObjectsProgram, AMeshStandsOnTheGround) {
-  // The box is centred on its origin: its lowest point is half of its size below.
+  // The box is centred on its origin, so its lowest point is half of its size below.
   const double ground = static_cast<double>(map_.heights(20, 30));
   must(with("--mesh " + kBox + "@x=20.5,y=30.25,scale=8"));
   const Scene standing = box(at(20.5, ground + 4, 30.25, 8));
@@ -134,7 +134,7 @@ TEST_F(TerrainObjectsProgram, OptionsOfMeshesAreThoseOfRender) {
 }
 
 TEST_F(TerrainObjectsProgram, AMeshTakesTheLookOfAnInput) {
-  // A look is no place: neither of what stands on the ground nor of what has coordinates.
+  // A look does not change the place, on the ground or at coordinates.
   for (const auto& [place, at] :
        {std::pair{"@x=20.5,y=30.25,scale=8", ","}, {",x=28,y=22,z=30,scale=7", "@"}}) {
     must(with("--mesh " + kBox + place + " --opacity 0.4"));

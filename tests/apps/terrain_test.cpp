@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum terrain`: each option by its effect, the picture being the one that the library draws
-// with the same choice; inputs that cannot be drawn.
+// `rastrum terrain`: with each option the picture equals the library's with the same choice; inputs
+// that cannot be drawn.
 #include <numbers>
 
 #include <rastrum/io.hpp>
@@ -37,13 +37,13 @@ class TerrainProgram : public ProgramOnHills {
                                     {.color8 = image.view()});
     return image;
   }
-  /// The program's picture with `extra` options, against the library's of `map`.
+  /// Compares the program's picture with `extra` options with the library's of `map`.
   void expect(const Args& extra, const HeightMap& map) const {
     must(base() + extra);
     EXPECT_TRUE(same_pixels(png("p.png"), drawn(map))) << extra;
   }
   void expect(const Args& extra) const { expect(extra, map_); }
-  /// Usage errors (2) and errors of the world (1) leave no file and say `part`.
+  /// Usage errors (2) and errors of files (1) leave no file and say `part`.
   void refuse(int status, const std::string& part, const Args& args) const {
     const auto before = files();
     refused("terrain" + args, part, status);
@@ -105,7 +105,7 @@ TEST_F(TerrainProgram, FiltersTilesProjectionMachine) {
   expect("--tile clamp --projection cylindrical --isa scalar --threads 2 --method words");
 }
 
-// An own step or growth means both; the filters that show cells take steps of a cell.
+// --step or --dz alone keeps the other at its default; filters that show cells step by a cell.
 TEST_F(TerrainProgram, Steps) {
   options_.step = 0.25;
   expect("--step 0.25");
@@ -172,7 +172,7 @@ TEST_F(TerrainProgram, ASkyOfOnesOwnStaysUnderALowSun) {
   EXPECT_EQ(png("p.png")(0, 0), options_.sky);
 }
 
-// Cells twice as long as texels: without the light between them shadows would be blocks.
+// Cells are twice as large as texels: without interpolated light, shadows would be blocks.
 TEST_F(TerrainProgram, LightIsSmoothUnderFinerColours) {
   Image<Rgba8> fine(2 * kMap, 2 * kMap);
   for (Rgba8& c : fine.pixels()) c = {240, 240, 240, 255};

@@ -16,7 +16,7 @@ namespace {
 
 class TransparencyOption : public Program {
  protected:
-  /// The program's picture with these options is the library's with `render_`.
+  /// Expects that the program's picture with these options equals the library's with `render_`.
   Image<Rgba8> expect(const Args& options) const {
     const Scene scene = scene_of(shapes::boxes(3));
     Image<Rgba8> picture =
@@ -39,7 +39,7 @@ TEST_F(TransparencyOption, Methods) {
     render_.transparency = method;
     EXPECT_FALSE(same_pixels(expect(Args("--transparency") + word), exact)) << word;
   }
-  // Four layers hold all that these boxes have.
+  // Four layers are enough for these boxes.
   render_.transparency = family::mlab4();
   (void)expect("--transparency mlab4");
   render_.transparency = {};

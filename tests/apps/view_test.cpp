@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The camera's missing parts.
+// How missing parts of a camera are filled in.
 #include "job/camera.hpp"
 
 #include <cmath>

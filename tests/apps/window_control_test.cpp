@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The parts of the window that need none: camera control, the choice of the resolution.
+// The parts of the window that need no window: camera control, the choice of the resolution.
 #include <cmath>
 #include <numbers>
 
@@ -101,7 +101,7 @@ TEST_F(Control, OrbitStopsBeforeThePoles) {
   for (int i = 0; i < 10; ++i) drag(0, 500);
   EXPECT_LT(camera().eye.y, 10);
   EXPECT_NEAR(camera().eye.y, 10, 0.01);
-  EXPECT_GT(camera().eye.z, 0);  // not over the top
+  EXPECT_GT(camera().eye.z, 0);  // does not go over the top
   drag(0, -100);
   EXPECT_NEAR(camera().eye.y, -10 * std::sin(0.01), 1e-3);  // a quarter turn from there
 }
@@ -197,7 +197,7 @@ TEST_F(Control, EveryChangeIsANewVersion) {
   EXPECT_EQ(camera().eye, (Vec3{0, 0, 10}));
 }
 
-/// A scene that takes fixed + rate · pixels, watched until the choice has settled.
+/// Simulates a scene that takes fixed + rate · pixels until the resolution has settled.
 std::size_t settled(double target, double fixed, double rate) {
   Resolution r(target);
   const auto cost = [&](std::size_t s) { return fixed + rate * kScales[s] * kScales[s]; };

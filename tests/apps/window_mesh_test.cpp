@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Meshes in a window without the window: scripts that replay the same way, the panel's settings,
-// and what draws the same picture elsewhere.
+// Meshes in the window's code without a window: replayed scripts, the panel's settings, and command
+// lines that draw the same picture.
 
 #include <rastrum/error.hpp>
 
@@ -34,7 +34,7 @@ class Shown {
     subject_.set(s);
   }
   [[nodiscard]] Image<Rgba8> image() { return subject_.draw(kWidth, kHeight, false)().image; }
-  /// The command line, and the words of Python, that draw it into a.png.
+  /// The command line and the Python code that draw it into a.png.
   [[nodiscard]] std::string line() { return texts().front().second; }
   [[nodiscard]] std::string python() { return texts().back().second; }
 
@@ -53,7 +53,7 @@ cli::SceneArguments arguments(const std::string& input) {
 
 class MeshViewerTest : public Program {
  protected:
-  /// A replay of `script` on `input`; the viewer's last error.
+  /// Replays `script` on `input` and returns the viewer's last error.
   std::string replay(const std::string& input, const std::string& script) {
     write("script.json", script);
     cli::SceneArguments a = arguments(input);
@@ -71,14 +71,14 @@ class MeshViewerTest : public Program {
   [[nodiscard]] std::string shot(const std::string& name) const {
     return R"("screenshot": ")" + path(name).string() + "\"";
   }
-  /// The picture that `rastrum render` makes of the camera file of a screenshot.
+  /// Draws the picture with `rastrum render` and a screenshot's camera file.
   Image<Rgba8> rendered(const std::string& input, const std::string& name, const std::string& size,
                         const Args& more = {}) {
     return drawn(Args("render --look plain --background #1a334d " + input + " --path " + name +
                       ".json --size " + size) +
                  more);
   }
-  /// The line that says what a subject shows draws it.
+  /// Expects that the subject's command line draws its picture.
   void expect_said(Shown& subject) const {
     const std::string line = subject.line();
     run_line(line);
@@ -117,7 +117,7 @@ constexpr const char* kHeights =
     "z\nproperty float heat\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
     "0 0 0 1\n1 0 0 2\n1 1 0.5 3\n0 1 0 4\n4 0 1 2 3\n";
 
-// Beside a screenshot lies what draws it again, whatever the window showed.
+// A file beside each screenshot draws it again.
 TEST_F(MeshViewerTest, ACommandLineDrawsTheSamePicture) {
   write("heights.ply", kHeights);
   const std::string file = path("heights.ply").string();
@@ -156,7 +156,7 @@ TEST_F(MeshViewerTest, SectionsAreClipPlanes) {
   expect_said(subject);
 }
 
-// Whatever the direction, the numbers are the same bits in both texts.
+// The numbers have the same bits in both texts, for any direction.
 TEST_F(MeshViewerTest, ASectionAcrossTheViewIsAClipPlane) {
   Shown subject(arguments("builtin:torus_knot"));
   for (const char* name : {"right", "up"})
@@ -210,7 +210,7 @@ TEST_F(MeshViewerTest, AFileWithoutTheNumbersIsShownWithoutThem) {
   EXPECT_FALSE(holds(line, "--bar"));
 }
 
-// The command line also has settings that a person changes in the panel alone.
+// The command line also has settings that only the panel can change.
 TEST_F(MeshViewerTest, ToneAndLightsOfThePanelAreSaid) {
   Shown subject(arguments("builtin:sphere"));
   subject.change([](auto& s) {
@@ -229,7 +229,7 @@ TEST_F(MeshViewerTest, LightsOfFilesAreShown) {
                     "no lights of their own"));
   const cli::SceneArguments a = arguments("builtin:sphere");
   const auto scene = load_scene(a);
-  scene->scene.lights = {headlight()};  // as a file has it
+  scene->scene.lights = {headlight()};  // as in a file
   Shown subject(a, scene);
   const auto under = [&](const char* lights) {
     subject.change([&](auto& s) { s.lights = lights; });
@@ -289,7 +289,7 @@ TEST_F(MeshViewerTest, TwoReplaysAreTheSame) {
   EXPECT_TRUE(read("a1.png") == read("a2.png"));
   EXPECT_TRUE(read("b1.png") == read("b2.png"));
   EXPECT_FALSE(read("a1.png") == read("b1.png"));
-  // And those of the path: picture 3 of ten a second is the one at 0.3 s.
+  // The path's too: picture 3 at ten a second is the one at 0.3 s.
   must(
       "render --look plain builtin:gyroid --path script.json --fps 10 --size 120x90 --background "
       "#1a334d -o f%d.png");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The panel of the window, and what it says beside the pointer.
+// The window's panel, and the tooltip at the pointer.
 #include "window_program.hpp"
 
 namespace rastrum::test::window_panel_test {
@@ -39,7 +39,7 @@ TEST_F(WindowTest, ThePanelChangesThePicture) {
     EXPECT_TRUE(comes_true([&] { return shows(before); })) << what;
     at_window(place, action);
     EXPECT_TRUE(comes_true([&] { return !shows(before); })) << what;
-    // A screenshot is of the picture that is wanted then, so it waits for the panel's frames.
+    // A screenshot is of the wanted picture, so it waits for the panel's frames.
     shot = screenshot();
     expect_line_draws(shot);
     EXPECT_TRUE(holds(read(shot + ".sh"), what));
@@ -89,7 +89,7 @@ TEST_F(WindowTest, ThePanelChangesThePicture) {
   expect_closed();
 }
 
-// The tooltip lies beside the pointer, over the picture.
+// The tooltip is beside the pointer, over the picture.
 TEST_F(WindowTest, AnythingUnderAPointerThatRestsIsSaid) {
   open("builtin:sphere --size 700x500 --scalars z");
   const Image<Rgba8> picture = png(screenshot() + ".png");
@@ -98,7 +98,7 @@ TEST_F(WindowTest, AnythingUnderAPointerThatRestsIsSaid) {
   EXPECT_TRUE(comes_true([&] { return !shows(picture); }));
   at_window("690 490", "");
   EXPECT_TRUE(comes_true([&] { return shows(picture); })) << "nothing is there";
-  // Straight from the panel, which has its own use for the pointer.
+  // Comes directly from the panel, which uses the pointer itself.
   at_window("100 20", "click 1 click 1");
   at_window("480 250", "");
   EXPECT_TRUE(comes_true([&] { return !shows(picture); }));

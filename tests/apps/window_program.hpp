@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A window under a virtual X server, with real keys and buttons by xdotool, for the tests of the
-// window.
+// A window under a virtual X server, with real keys and buttons by xdotool, for the window's tests.
 //
-// Nothing here waits for a time to pass: what is waited for is the picture on the screen, the
-// window's title or a file, and whatever ends the program ends the waiting.
+// No test depends on time: tests wait for the picture on the screen, the window's title or a file,
+// or for the program's end.
 #pragma once
 
 #include <algorithm>
@@ -17,9 +16,9 @@
 
 namespace rastrum::test {
 
-/// The panel's column; what is right of it is the picture.
+/// The width of the panel; the picture is right of it.
 inline constexpr int kPanel_px = 345;
-/// The height of a part's head in the panel, and the distance from one row to the next.
+/// The height of a part's head in the panel, and the distance between rows.
 inline constexpr int kHead_px = 19, kRow_px = 23;
 
 inline bool have_program(const char* program) {
@@ -55,22 +54,22 @@ class WindowTest : public Program {
   }
 
   void start(Args args) {
-    // Small pictures that are drawn often: without a studio.
+    // Pictures are small and drawn often, so they do without the studio.
     if (std::ranges::find(args, "--terrain") == args.end()) args = args + "--look plain";
     args.insert(args.begin(), {RASTRUM_PROGRAM, "view"});
     viewer_.start(args, path(""), err());
   }
-  /// The same, until its window has the keyboard.
+  /// The same, and waits until the window has the keyboard.
   void open(Args args) {
     start(std::move(args));
     ASSERT_TRUE(comes_true([&] {
       window_ = server_->window_of(viewer_.id());
       return window_ != 0 && server_->focus(window_);
     })) << said();
-    // In the corner, where nothing is under it.
+    // In the corner, where nothing is below it.
     at_window("2 2", "");
   }
-  /// Waits, as long as the program runs.
+  /// Waits until `what` is true or the program ends.
   bool comes_true(const std::function<bool()>& what) {
     bool is_true = false;
     wait_until([&] {
@@ -83,7 +82,6 @@ class WindowTest : public Program {
   [[nodiscard]] std::string said() const {
     return slurp(err());
   }
-  /// Runs xdotool.
   static void tool(const std::string& args) {
     EXPECT_EQ(std::system(("xdotool " + args + " >/dev/null 2>&1").c_str()), 0) << args;
   }
@@ -100,7 +98,7 @@ class WindowTest : public Program {
         << png_name << said();
     return stem;
   }
-  /// The screen where it shows the picture and nothing else.
+  /// The part of the screen that shows only the picture.
   [[nodiscard]] Image<Rgba8> seen(const Image<Rgba8>& like) const {
     return server_->pixels(window_, kPanel_px, 0, like.width() - kPanel_px, like.height());
   }
@@ -110,7 +108,7 @@ class WindowTest : public Program {
       for (int x = 0; x < part.width(); ++x) part(x, y) = picture(x + kPanel_px, y);
     return same_pixels(part, seen(picture));
   }
-  /// Holds a key until something else than `shot` is on the screen.
+  /// Holds a key until the screen differs from `shot`.
   void hold(const std::string& key, const std::string& shot) {
     const Image<Rgba8> picture = png(shot + ".png");
     EXPECT_TRUE(comes_true([&] { return shows(picture); })) << shot;
@@ -118,7 +116,7 @@ class WindowTest : public Program {
     EXPECT_TRUE(comes_true([&] { return !shows(picture); })) << key;
     tool("keyup " + key);
   }
-  /// Whether a screenshot is, bit for bit, what `rastrum COMMAND` draws with its camera.
+  /// Expects that a screenshot equals, bit for bit, `rastrum COMMAND`'s picture with its camera.
   void expect_drawn(const std::string& command, const std::string& shot, const Args& options) {
     const Image<Rgba8> picture = png(shot + ".png");
     const std::string size =
@@ -130,7 +128,7 @@ class WindowTest : public Program {
   void expect_rendered(const std::string& shot, const Args& options) {
     expect_drawn("render", shot, options + "--quiet --background #20242c");
   }
-  /// Whether the command line beside a screenshot draws it again.
+  /// Expects that the command line beside a screenshot draws it again.
   void expect_line_draws(const std::string& shot) {
     const Image<Rgba8> picture = png(shot + ".png");
     std::filesystem::rename(path(shot + ".png"), path("shown.png"));
@@ -139,7 +137,7 @@ class WindowTest : public Program {
     EXPECT_TRUE(same_pixels(picture, png(shot + ".png"))) << line;
     std::filesystem::rename(path("shown.png"), path(shot + ".png"));
   }
-  /// Where the heads of the panel's parts begin, px from above.
+  /// Where the heads of the panel's parts begin, px from the top.
   [[nodiscard]] std::vector<int> heads() const {
     constexpr int kRight_px = 310, kTitle_px = 30, kHeight_px = 780, kBlue = 45;
     const Image<Rgba8> column = server_->pixels(window_, kRight_px, 0, 1, kHeight_px);
@@ -149,7 +147,7 @@ class WindowTest : public Program {
       if (p.b > p.r + kBlue) {
         if (begin < 0) begin = y;
       } else if (begin >= 0) {
-        // Bars of stages are lower.
+        // The bars of stages are lower.
         if (y - begin >= kHead_px - 2) found.push_back(begin);
         begin = -1;
       }
@@ -174,7 +172,7 @@ class WindowTest : public Program {
     for (const Rgba8 p : screen.pixels()) red += near(p.r, 255) && near(p.g, 115) && near(p.b, 102);
     return red > 50;
   }
-  /// Its end, which must be a clean one: under a sanitizer a leak is not.
+  /// Expects a clean end. Under a sanitizer a leak is not clean.
   void expect_closed() {
     EXPECT_TRUE(wait_until([&] { return !viewer_.running(); }));
     EXPECT_EQ(viewer_.status(), 0) << said();

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The window itself: keys, the mouse, sizes, files dropped as a file manager does, and the
-// program's own screenshots, which say where the camera stands and are compared with `rastrum
-// render`.
+// The window itself: keys, the mouse, sizes, dropped files. Screenshots give the camera and are
+// compared with `rastrum render`.
 #include <array>
 
 #include <rastrum/io.hpp>
@@ -74,7 +73,7 @@ TEST_F(WindowTest, KeysChangeThePicture) {
   draws("l l l l l l", "--opacity 0.7");
   draws("t", "--transparency filter:3");
   draws("b", "--samples 4");
-  // The heat map of all that: its picture is another output of the same frame.
+  // The heat map of the scene: its picture is another output of the same frame.
   tool("key h");
   const std::string heat = screenshot();
   must("render --look plain" + options + ("--path " + heat + ".json") +
@@ -82,7 +81,7 @@ TEST_F(WindowTest, KeysChangeThePicture) {
   EXPECT_TRUE(same_pixels(png(heat + ".png"), png("heat.png")));
   EXPECT_FALSE(same_pixels(png(heat + ".png"), png("x.png")));
   draws("h", {});
-  // A rasterizer that has no samples draws nothing, so that there is no screenshot to wait for.
+  // A rasterizer without samples draws nothing, so there is no screenshot to wait for.
   tool("key n n n");
   EXPECT_TRUE(comes_true([&] { return shows_error(300, 200); }));
   tool("key shift+n shift+n shift+n");
@@ -114,7 +113,7 @@ TEST_F(WindowTest, AResizeKeepsThePictureRight) {
   for (const auto& size :
        {std::array{333, 250}, {1, 1}, {901, 703}, {3, 700}, {640, 1}, {640, 480}}) {
     server_->resize(window_, size[0], size[1]);
-    // The window hears of it when the server gets to it: a key may come before.
+    // A key may arrive before the window hears of the change from the server.
     std::string shot;
     EXPECT_TRUE(comes_true([&] {
       shot = screenshot();

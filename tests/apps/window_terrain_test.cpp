@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Terrains in the window without a window: keys and time to a camera, path files, and pictures that
-// are, bit for bit, those of `rastrum terrain`.
+// Terrains in the window's code without a window: keys and time move the camera, path files, and
+// pictures that equal those of `rastrum terrain` bit for bit.
 #include <cmath>
 #include <cstdio>
 
@@ -44,7 +44,7 @@ TerrainPose pose_at(const TerrainCamera& camera) {
 class TerrainKeys : public testing::Test {
  protected:
   TerrainKeys() : control(pose_at({100, 200, 50, 0, 80, 0})) { control.resize(640, 400); }
-  /// The pose after `name` was held for a second from home on.
+  /// The pose after `name` was held for a second, starting at home.
   const TerrainPose& after(const char* name, int steps = 10) {
     control.handle(key("home"));
     control.handle(key(name));
@@ -223,7 +223,7 @@ class TerrainInWindow : public Program {
     must("terrain --size 96x64 --path camera.json -o r.png" + options);
     return png("r.png");
   }
-  /// The line has these words, and draws what the window shows.
+  /// Expects that the command line has these words and draws what the window shows.
   void expect_said(const std::string& words) const {
     const auto texts = subject->same_picture(96, 64, "said.png");
     const std::string& line = texts.front().second;
@@ -251,7 +251,7 @@ TEST_F(TerrainInWindow, PicturesAreTheCommands) {
       same_pixels(shown(), rendered("--height h.png --shadows sharp --sun 200,20 --distance 300")));
 }
 
-// Whatever the window shows, a line says it, angles of keys and drags too.
+// The command line covers all that the window shows, also angles from keys and drags.
 TEST_F(TerrainInWindow, ACommandLineDrawsTheSamePicture) {
   expect_said("--height ");
   for (const char* name : {"a", "w", "left", "o", "m", "j", "down", "q"}) {
@@ -292,8 +292,8 @@ TEST_F(TerrainInWindow, LightsAndWhatIsOverTheGroundAreTheCommands) {
         "exposure=-0.5", "environment_behind=True", "\"axes\"", "\"bounds\""})
     EXPECT_TRUE(holds(python, part)) << part << '\n' << python;
 
-  // The command line has the panel's lights in the place of those that were given; a headlight
-  // moves with the camera.
+  // In the command line the panel's lights replace the given ones. A headlight moves with the
+  // camera.
   for (const char* const name : {"studio", "headlight", "sun"}) {
     TerrainSubject::Settings s = subject->settings();
     s.lights = name;
@@ -330,7 +330,7 @@ TEST_F(TerrainInWindow, OtherInputsAreSaidToo) {
   }
 }
 
-// Degrees lead to every angle that a hand leaves.
+// Every angle that a hand can leave is a number of degrees.
 TEST(TerrainAngles, AreThoseThatDegreesLeadTo) {
   double rad = -7;
   int others = 0;
@@ -343,7 +343,7 @@ TEST(TerrainAngles, AreThoseThatDegreesLeadTo) {
   EXPECT_GT(others, 0) << "some have no degrees, else none of this is needed";
 }
 
-// Sun, distance and field of view belong to the keys, not to the options that began.
+// The keys own sun, distance and field of view; the options only give their start.
 TEST_F(TerrainInWindow, HeldKeysChangeThePicture) {
   Image<Rgba8> before = shown();
   const auto hold = [&](const char* name) {

@@ -15,9 +15,9 @@ namespace rastrum::test::window_viewer_test {
 namespace {
 
 using namespace cli::window;
-using Picture = cli::window::Drawn;  // program.hpp has a Drawn of its own
+using Picture = cli::window::Drawn;  // program.hpp also has a Drawn
 
-/// Draws one colour, as slowly as it is told to, row by row: its unit of work.
+/// Draws one colour row by row at a chosen speed. A row is its unit of work.
 class FakeSubject final : public Subject {
  public:
   void handle(const Event& event) override {
@@ -81,12 +81,12 @@ class FakeSubject final : public Subject {
 
   bool is_moving = false, refuse = false, picks = true;
   double ms_a_pixel = 1;
-  bool glances = false;  ///< of a hundredth of the time
+  bool glances = false;  ///< glances take a hundredth of the time
   int pictures = 0, seen_glances = 0;
   std::atomic<int> looks = 0;
   std::atomic<bool> hold_picks = false;
 
-  /// Pictures of this width wait in the middle, until they are let go or stopped.
+  /// Pictures of this width wait in the middle, until they are released or stopped.
   static constexpr int kHoldRow = 2;
   std::atomic<int> hold_width = -1;
   std::atomic<int>* rows = nullptr;  ///< of those pictures; outlives the subject
@@ -127,7 +127,7 @@ class ViewerTest : public Program {
     viewer.reset();
     Program::TearDown();
   }
-  /// As the window's loop does, without its clock.
+  /// Runs the window's loop without its clock.
   void run_for(double seconds) {
     constexpr double kStep = 0.01;
     for (double t = 0; t < seconds; t += kStep) {
@@ -137,7 +137,7 @@ class ViewerTest : public Program {
         std::this_thread::sleep_for(std::chrono::microseconds(50));
     }
   }
-  /// The same quickly, until all is done.
+  /// The same without waiting for each picture, until all is done.
   void rest_for(double seconds) {
     constexpr double kStep = 0.01;
     const auto step = [&] {
@@ -154,7 +154,7 @@ class ViewerTest : public Program {
     ASSERT_TRUE(subject->held);
     rows = 0;
   }
-  /// Updates once, then until the picture under way is finished or given up.
+  /// Updates until the current picture is finished or given up.
   void finish_picture() {
     viewer->update();
     subject->let_go = true;
@@ -286,7 +286,7 @@ TEST_F(ViewerTest, AScreenshotThatCannotBeWrittenIsAnError) {
   EXPECT_TRUE(holds(viewer->notice(), "a.png is not written"));
 }
 
-// The bound is in work: not one more row of the full picture, and the preview's rows are the next.
+// The bound is in work: the full picture gets no further row, and the preview's rows come next.
 TEST_F(ViewerTest, AFullPictureIsGivenUpWhenTheViewMoves) {
   subject->hold_width = 64;
   run_until_held();
@@ -436,7 +436,7 @@ TEST_F(ViewerTest, ALookIsGivenUpWhenTheViewMoves) {
   const std::uint64_t serial = viewer->serial();
   viewer->handle(press("w"));
   viewer->update();
-  // Nobody lets it go: it waits until it is stopped.
+  // Nobody releases it: it waits until it is stopped.
   while (!viewer->update()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   subject->hold_picks = false;
   run_for(0.05);
@@ -451,7 +451,7 @@ TEST_F(ViewerTest, ALookIsGivenUpWhenTheViewMoves) {
 TEST_F(ViewerTest, EndsWhileAPictureIsDrawn) {
   viewer->advance(0);
   viewer->update();
-  viewer.reset();  // waits for the thread, and is silent about the picture
+  viewer.reset();  // waits for the thread and ignores the picture
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 constexpr std::chrono::seconds kPatience{150};
 
-/// A property of 32-bit numbers or of text; null where the window has none of that type.
+/// A property of 32-bit numbers or of text; null if the window has none of that type.
 struct Property {
   Property(Display* display, Window window, const char* name, Atom type) {
     Atom actual = 0;
@@ -68,7 +68,7 @@ void Process::start(const std::vector<std::string>& command, const std::filesyst
   status_ = -1;
   child_ = ::fork();
   if (child_ != 0) return;
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // a test that is killed leaves none behind
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // ends the server with a killed test
   const int e = ::open(said.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
   if (e < 0 || ::dup2(e, 1) < 0 || ::dup2(e, 2) < 0 || ::chdir(folder.c_str()) != 0) ::_exit(127);
   if (inherit >= 0) ::fcntl(inherit, F_SETFD, 0);
@@ -102,10 +102,10 @@ void Process::ended(int status) {
 }
 
 XServer::XServer() {
-  // A window may be gone by the time one asks about it: that is an answer, not the test's end.
+  // A window may vanish before a request arrives, which must not end the test.
   XSetErrorHandler([](Display*, XErrorEvent*) { return 0; });
-  // Numbers of this process, far from those that a server searching for one tries: while it
-  // searches it takes the sockets of others away.
+  // Numbers of this process, far from those that a server tries when it searches for a free one.
+  // While it searches it steals the sockets of others.
   constexpr int kFirst = 2000, kNumbers = 40000, kTries = 5, kStride = 7919;
   for (int i = 0; i < kTries; ++i)
     if (!fails_with(kFirst + (static_cast<int>(::getpid()) + i * kStride) % kNumbers)) return;
@@ -126,13 +126,13 @@ bool XServer::fails_with(int number) {
   name_ = std::string(":").append(std::to_string(number));
   process_.start({"Xvfb", name_, "-displayfd", std::to_string(ends[1]), "-screen", "0",
                   "1024x800x24", "-nolisten", "tcp",
-                  // No key repeats because this machine was busy between press and release; and
-                  // the server does not start anew when its last client leaves.
+                  // A slow machine must not repeat keys, and the server must not restart when its
+                  // last client leaves.
                   "-r", "-noreset"},
                  folder_.path(""), folder_.path("said"), ends[1]);
   ::close(ends[1]);
-  // It writes its number and, in a write of its own, the end of the line once it listens; where
-  // nobody reads that to the end it dies.
+  // The server writes its number and, once it listens, separately the end of the line. It dies if
+  // nobody reads that far.
   bool listens = false, answers = true;
   while (!listens && answers) {
     pollfd ready{ends[0], POLLIN, 0};
@@ -161,7 +161,7 @@ XWindow XServer::window_of(pid_t process) const {
   for (unsigned i = 0; i < count && found == 0; ++i) {
     const Property pid(display_, children[i], "_NET_WM_PID", XA_CARDINAL);
     XWindowAttributes attributes{};
-    // Numbers of 32 bits are handed out as longs.
+    // Xlib returns 32-bit numbers as longs.
     if (pid.count == 1 && *reinterpret_cast<const long*>(pid.data) == process &&
         XGetWindowAttributes(display_, children[i], &attributes) != 0 &&
         attributes.map_state == IsViewable)
@@ -209,7 +209,7 @@ std::string XServer::clipboard() const {
                     XInternAtom(display_, "RASTRUM_TEXT", False), mine, CurrentTime);
   XEvent answer{};
   std::string found;
-  // The server answers where nobody has the clipboard, and who has it where somebody has.
+  // The owner of the clipboard answers, or the server if there is none.
   if (wait_until([&] {
         return XCheckTypedWindowEvent(display_, mine, SelectionNotify, &answer) == True;
       }) &&

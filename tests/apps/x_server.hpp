@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A virtual X server of the test's own, and what a test asks it about a program's window.
+// A virtual X server for a test, and queries about a program's window.
 #pragma once
 
 #include <sys/types.h>
@@ -21,11 +21,11 @@ namespace rastrum::test {
 using XDisplay = ::_XDisplay;
 using XWindow = unsigned long;
 
-/// Asks again and again, for minutes: a machine that runs everything at once, under a sanitizer, is
-/// slow. False: it has not come true.
+/// Polls for minutes, because a busy machine under a sanitizer is slow. False: it did not come
+/// true.
 bool wait_until(const std::function<bool()>& done);
 
-/// A process of the test's own, ended with it.
+/// A child process that ends with the test.
 class Process {
  public:
   Process() = default;
@@ -33,15 +33,15 @@ class Process {
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
-  /// `inherit`: a descriptor that stays open in the child, or −1; what it says goes to `said`.
+  /// `inherit`: a descriptor that stays open in the child, or −1. Its output goes to `said`.
   void start(const std::vector<std::string>& command, const std::filesystem::path& folder,
              const std::filesystem::path& said, int inherit = -1);
   [[nodiscard]] bool running();
   void signal(int number) const;
-  /// Sends it and waits for the end.
+  /// Sends the signal and waits for the end.
   void stop(int signal);
   [[nodiscard]] pid_t id() const { return child_; }
-  /// As Outcome::status; −1 while it runs.
+  /// Like Outcome::status; −1 while it runs.
   [[nodiscard]] int status() const { return status_; }
 
  private:
@@ -58,27 +58,27 @@ class XServer {
   XServer(const XServer&) = delete;
   XServer& operator=(const XServer&) = delete;
 
-  /// Null where there is no server.
+  /// Null if there is no server.
   [[nodiscard]] XDisplay* display() const { return display_; }
   [[nodiscard]] const std::string& name() const { return name_; }
-  /// Why there is none.
+  /// Why there is no server.
   [[nodiscard]] std::string said() const;
 
-  /// The window of a process once it can be seen, else 0.
+  /// The visible window of a process, else 0.
   [[nodiscard]] XWindow window_of(pid_t process) const;
   [[nodiscard]] std::string title(XWindow window) const;
-  /// Gives it the keyboard, as no window manager is there to do; whether it has it.
+  /// Gives the window the keyboard, because there is no window manager. Returns whether it has it.
   [[nodiscard]] bool focus(XWindow window) const;
   void resize(XWindow window, int width, int height) const;
   /// Asks the window to close, as a window manager's button does.
   void close(XWindow window) const;
-  /// The text that somebody has copied; empty: nobody has.
+  /// The copied text; empty if there is none.
   [[nodiscard]] std::string clipboard() const;
-  /// A window's pixels from (x, y) on, as the server has them; empty if it has none.
+  /// A window's pixels from (x, y) on, as on the server; empty if it has none.
   [[nodiscard]] Image<Rgba8> pixels(XWindow window, int x, int y, int width, int height) const;
 
  private:
-  /// Starts the server with this number. True: it gave up at once, so another one may do.
+  /// Starts the server with this number. True: it gave up at once, and another number may work.
   bool fails_with(int number);
 
   TempFolder folder_;
@@ -87,8 +87,8 @@ class XServer {
   XDisplay* display_ = nullptr;
 };
 
-/// Drags a file over the middle of a window and drops it, as a file manager does. Empty, or what
-/// went wrong.
+/// Drags a file over the middle of a window and drops it like a file manager. Returns "" or the
+/// error.
 [[nodiscard]] std::string drop_file(const XServer& server, XWindow window,
                                     const std::filesystem::path& file);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The dragging side of XDND 5 (https://freedesktop.org/wiki/Specifications/XDND): enter, position,
-// drop; the target asks for the selection and says when it has it.
+// The source's side of XDND 5 (https://freedesktop.org/wiki/Specifications/XDND): enter, position,
+// drop. The target asks for the selection and confirms it.
 #include <array>
 #include <cstdio>
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The comparisons themselves: they must find what differs.
+// The comparisons find what differs.
 #include <bench/peers/compare.hpp>
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ TEST(Compare, ColorsFindEachDifference) {
   Image<Rgba8> a(4, 1), b(4, 1);
   a(0, 0) = {10, 20, 30, 255}, b(0, 0) = {11, 19, 30, 255};  // within 1
   a(1, 0) = {10, 20, 30, 255}, b(1, 0) = {10, 22, 30, 255};  // a channel 2 apart
-  a(2, 0) = {10, 20, 30, 255};                               // one alone covers
+  a(2, 0) = {10, 20, 30, 255};                               // only one covers it
   const ColorDifference d = compare_colors(a, b, 1);
   EXPECT_EQ(d.covered, 3U);
   EXPECT_EQ(d.one_only, 1U);
@@ -36,7 +36,7 @@ TEST(Compare, PicturesAreComparedAsTheyLookOverBlack) {
   Image<Vec4> a(4, 1), b(4, 1);
   a(0, 0) = b(0, 0) = {0.5F, 0.25F, 0.125F, 1};
   a(1, 0) = {0.5F, 0.5F, 0.5F, 1}, b(1, 0) = {0.5F, 0.75F, 0.5F, 1};
-  a(2, 0) = {1.5F, 0, 0, 1}, b(2, 0) = {1, 0, 0, 0.5F};  // displayed alike, but for alpha
+  a(2, 0) = {1.5F, 0, 0, 1}, b(2, 0) = {1, 0, 0, 0.5F};  // equal when displayed, but for alpha
   const PictureError e = picture_error(a, b, 0.1);       // the last pixel is empty in both
   EXPECT_EQ(e.covered, 3U);
   EXPECT_EQ(e.far, 2U);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum bench cuda` where there is no GPU: all its tables, small, with the device's code
-// compiled for the CPU (CMakeLists.txt). Each checks its pictures against those of the threads, and
-// says so.
+// `rastrum bench cuda` without a GPU: all its tables, small, with device code compiled for the CPU
+// (CMakeLists.txt). Each table checks its pictures against the threads' and says so.
 #include <bench/bench.hpp>
 #include <bench/cuda/device.hpp>
 #include <bench/cuda/rates.hpp>
@@ -73,7 +72,7 @@ TEST(BenchCuda, AllTablesRunAndTheDevicesPicturesAreRight) {
   }
   EXPECT_EQ(looks.size(), 3U);
 
-  // Subdivided 0, 1 and 2 times at scales 1, 2 and 4, of which the finest is drawn in parts.
+  // Subdivided 0, 1 and 2 times at scales 1, 2 and 4; the finest is drawn in parts.
   std::map<std::string, std::set<std::string>> tables;
   for (const nlohmann::json& f : figures("paper5-table4")) {
     if (!f.contains("floor_ms")) continue;

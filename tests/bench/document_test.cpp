@@ -28,7 +28,7 @@ TEST(Document, MarkdownShowsPaperAndOursLineByLine) {
   document.notes = {"A note."};
   add(document, example());
   const std::string text = to_markdown(document);
-  // Widths follow the longest cell, so compare without runs of blanks and dashes.
+  // Widths follow the longest cell, so runs of blanks and dashes are ignored.
   std::string squeezed;
   for (const char c : text)
     if (!(c == ' ' || c == '-') || squeezed.empty() || squeezed.back() != c) squeezed += c;

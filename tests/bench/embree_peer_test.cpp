@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rastrum's `phong` against rays traced by Embree: another way to the same picture.
+// Compares Rastrum's `phong` with Embree's traced rays.
 #include <bench/peers/compare.hpp>
 #include <bench/peers/embree_peer.hpp>
 #include <bench/scenes.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Floors by hand, and limits that a machine can have.
+// Floors computed by hand, and plausible limits of a machine.
 #include <bench/floor.hpp>
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tests of an OpenGL peer, which are skipped, with the reason, where there is none.
+// Tests of an OpenGL peer, which are skipped, with the reason, if there is none.
 #pragma once
 
 #include <bench/peers/started.hpp>

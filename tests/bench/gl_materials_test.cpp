@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `material` against the same formula in OpenGL (llvmpipe): all that a material may have, what the
+// `material` against the same formula in OpenGL (llvmpipe): all features of a material, what the
 // peer refuses, and `rastrum bench materials` itself.
 #include <bench/bench.hpp>
 #include <bench/peers/compare.hpp>
@@ -28,11 +28,11 @@ namespace rastrum::bench::gl_materials_test {
 namespace {
 
 constexpr int kWidth = 320, kHeight = 240;
-// Steps of 255. Neighbouring texels are as far apart as they can be here, so that differences in
-// the levels of detail, which llvmpipe takes from differences of a quad's pixels, are seen.
+// Steps of 255. Neighbouring texels differ as much as possible, so that differences in the level of
+// detail show, which llvmpipe takes from differences within a quad of pixels.
 constexpr int kTolerance = 3;
 
-/// Waves of another phase in each channel, so that whatever is read wrongly is seen.
+/// Waves with another phase in each channel, so that every wrong read shows.
 Texture waves(int width, int height, double phase) {
   Texture t{.image = Image<Rgba8>(width, height)};
   for (int y = 0; y < height; ++y)
@@ -46,7 +46,7 @@ Texture waves(int width, int height, double phase) {
   return t;
 }
 
-/// A quad through (x, y, z) that leans away; its texture lies on it `repeats` times.
+/// A quad through (x, y, z) that leans back and repeats its texture `repeats` times.
 Mesh quad(Vec3 at, float lean, float repeats, std::uint32_t material) {
   Mesh mesh{.material = material};
   for (const Vec2 p : {Vec2{-1, -1}, Vec2{1, -1}, Vec2{1, 1}, Vec2{-1, 1}}) {
@@ -58,7 +58,7 @@ Mesh quad(Vec3 at, float lean, float repeats, std::uint32_t material) {
   return mesh;
 }
 
-/// Quads beside and behind each other, each with more of a material than the one before.
+/// Quads beside and behind each other, each with more features than the one before.
 Scene every_feature() {
   Scene s{.textures = {waves(37, 64, 0), waves(64, 16, 1), waves(32, 32, 2)}};
   s.textures[1].wrap_u = Wrap::mirrored_repeat;
@@ -90,7 +90,7 @@ Scene every_feature() {
   m = {};
   add(m, {0.5F, -1.1F, -1}, 0, 1);  // behind the holes, single-sided
   add(m, {2, -1.1F, 0}, 0, 1);
-  s.instances.back().object_to_world.m[0][0] = -1;  // mirrored: what is its front is seen
+  s.instances.back().object_to_world.m[0][0] = -1;  // mirrored: its front faces the camera
   s.instances.back().object_to_world.m[0][3] = 4;
   add(m, {1, -1.1F, 1}, 0, 1);
   s.meshes.back().indices = {0, 2, 1, 0, 3, 2};  // its back is left out
@@ -129,7 +129,7 @@ TEST_F(GlMaterialsTest, DrawsAllThatAMaterialMayHave) {
   EXPECT_GE(d.share(), 0.999);
   EXPECT_EQ(d.one_only, 0U);
 
-  // Each of them is seen in this picture.
+  // Each of them affects this picture.
   const auto change = [&](const char* what, auto&& f) {
     Scene other = every_feature();
     f(other);

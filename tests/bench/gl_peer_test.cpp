@@ -38,7 +38,7 @@ Image<std::uint32_t> exact_counts(const Mesh& mesh, int width, int height) {
   return counts;
 }
 
-// The peer is told what our conventions are; that it keeps them is seen without our rasterizers.
+// The peer is set up for our conventions. This tests it without our rasterizers.
 TEST_F(GlPeerTest, KeepsTheTopLeftRule) {
   for (const auto [width, height] : kSizes) {
     const Mesh mesh = window_triangles(width, height, 2000, 7);
@@ -76,7 +76,7 @@ TEST_F(GlPeerTest, ExactVerticesGiveTheSameCounts) {
     }
 }
 
-/// A scene by name, at the two sizes of the issue.
+/// A scene by name, at two sizes.
 class GlMeshTest : public GlPeerTest, public testing::WithParamInterface<const char*> {};
 
 TEST_P(GlMeshTest, SameCountsAndPhong) {

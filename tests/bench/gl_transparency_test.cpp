@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// OpenGL's three ways of transparency against layers that the test blends itself: what they are
-// told to do is what they do, before Rastrum is compared with them.
+// Compares OpenGL's three ways of transparency with layers that the test blends, before Rastrum is
+// compared with them.
 #include <bench/peers/compare.hpp>
 #include <bench/peers/gl_transparency.hpp>
 #include <bench/peers/vtk_peer.hpp>
@@ -22,7 +22,7 @@
 namespace rastrum::bench::gl_transparency_test {
 namespace {
 
-/// A rectangle over columns [from, width) of the window, at one depth and with one normal.
+/// A rectangle over columns [from, width) of the window, with one depth and normal.
 struct Layer {
   int from = 0;
   float z = 0;
@@ -46,7 +46,7 @@ std::array<double, 3> phong(Vec3 n) {
   return {0.8 * diffuse + highlight, 0.7 * diffuse + highlight, 0.6 * diffuse + highlight};
 }
 
-/// `layers` in a random order, each beginning at another column, no two at one depth.
+/// `layers` in random order, each from another column on, at distinct depths.
 std::vector<Layer> random_layers(int count, int width, std::uint64_t seed) {
   std::mt19937_64 bits(seed);
   std::vector<Layer> layers;
@@ -77,8 +77,8 @@ Mesh mesh_of(const std::vector<Layer>& layers, int width, int height) {
   return mesh;
 }
 
-/// A row of the picture; each is the same. `sorted`: nearest in front, the first submitted of
-/// equals, else the last submitted in front.
+/// A row of the picture; all rows are equal. `sorted`: the nearest in front, of equals the first
+/// submitted; otherwise the last submitted in front.
 std::vector<std::array<double, 4>> blended(std::vector<Layer> layers, int width, double opacity,
                                            bool sorted) {
   if (sorted)
@@ -104,7 +104,7 @@ class GlTransparencyTest : public GlFixture<GlTransparency> {
     gl_->set_view(window_camera(width, height), width, height);
   }
 
-  /// The largest difference of a channel from `row` in the last picture.
+  /// The largest difference of a channel between `row` and the last picture.
   double worst(const std::vector<std::array<double, 4>>& row) {
     const Image<Vec4> picture = gl_->picture();
     double most = 0;
@@ -119,7 +119,7 @@ class GlTransparencyTest : public GlFixture<GlTransparency> {
   }
 };
 
-// Half floats in [0.5, 1.1) are 2⁻¹⁰ apart at most.
+// Half floats in [0.5, 1.1) are at most 2⁻¹⁰ apart.
 constexpr double kHalf = 1e-3, kFloat = 2e-5;
 
 TEST_F(GlTransparencyTest, BlendsAnyNumberOfLayers) {
@@ -210,7 +210,7 @@ TEST_F(GlTransparencyTest, VtkDrawsTheSame) {
   const Mesh mesh = load(scene_by_name("torus-knot"));
   gl_->set_mesh(mesh.view());
   vtk->set_mesh(mesh.view());
-  // Wide, then high: the field of view is that of the smaller side.
+  // The field of view is the smaller side's: a wide picture, then a high one.
   for (const auto& [width, height] : {std::pair{400, 300}, {300, 400}}) {
     gl_->set_view(whole_view(mesh), width, height);
     gl_->draw(GlBlending::unsorted, 0.5F, GlPrecision::float32);

@@ -25,8 +25,8 @@ TEST(Measure, SpreadIsHalfTheQuartilesDistanceOverTheMedian) {
 }
 
 TEST(Measure, RatioIsTakenRoundByRound) {
-  // The machine slows down from round to round and disturbs `b` once; medians by themselves would
-  // say 2.
+  // The machine slows down between rounds and disturbs `b` once. The ratio of the medians would be
+  // 2.
   const Timing a{"a", {10, 20, 60}, {}};
   const Timing b{"b", {2, 10, 12}, {}};
   EXPECT_DOUBLE_EQ(median_ratio(a, b), 5);
@@ -41,7 +41,7 @@ TEST(Measure, TurnsAlternate) {
   };
   const Contender contenders[] = {{"A", frame('A')}, {"B", frame('B')}, {"C", frame('C')}};
   const auto timings = measure_interleaved(contenders, {.rounds = 3, .turn_ms = 0.1});
-  EXPECT_EQ(order, "ABCABCABCABC");  // the first three are the look at how long a frame takes
+  EXPECT_EQ(order, "ABCABCABCABC");  // the first three measure the length of a frame
   ASSERT_EQ(timings.size(), 3U);
   for (const Timing& t : timings) EXPECT_EQ(t.samples_ms.size(), 3U);
   EXPECT_EQ(timings[1].name, "B");

@@ -11,7 +11,7 @@
 namespace rastrum::bench::plot_test {
 namespace {
 
-/// Tags that are opened are closed in order, and no bare & or < stands in the text.
+/// Whether all tags are closed in order and the text has no bare & or <.
 bool well_formed(const std::string& xml) {
   std::vector<std::string> open;
   for (std::size_t i = 0; i < xml.size(); ++i) {
@@ -41,7 +41,7 @@ int count(const std::string& text, const std::string& what) {
   return n;
 }
 
-/// The values of an attribute, in order of appearance, of the elements `tag`.
+/// The values of an attribute of all `tag` elements, in order.
 std::vector<double> attributes(const std::string& svg, const std::string& tag,
                                const std::string& name) {
   std::vector<double> values;
@@ -94,7 +94,7 @@ TEST(Plot, BarsStandOnTheAxisAndScale) {
   plot.log_y = false;
   plot.panels[0].series = {{"ours", {1, 2, 4}, 0}};
   const std::string svg = to_svg(plot);
-  // The page, the legend's square, then the bars; the page's height is in percent.
+  // The page, the legend's square, then the bars. The page's height is a percentage.
   const std::vector<double> y = attributes(svg, "rect", "y"), h = attributes(svg, "rect", "height");
   ASSERT_GE(h.size(), 3U);
   const std::vector<double> bars(h.end() - 3, h.end());

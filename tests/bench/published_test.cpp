@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The papers' figures as data: what their tables say of themselves must hold of our copy.
+// The papers' figures as data: our copy satisfies what the papers say about their tables.
 #include <papers/paper1/published.hpp>
 #include <papers/paper2/published.hpp>
 #include <papers/paper5/published.hpp>
@@ -41,7 +41,7 @@ TEST(Published, Paper1HasAllItsFigures) {
 }
 
 TEST(Published, Paper1GrowsWithTrianglesAndPixels) {
-  // Memory never shrinks with the share, time never with the picture's edge.
+  // Memory does not shrink with a larger share, nor time with a larger picture.
   for (std::size_t r = 0; r < paper1::kTable2.size(); ++r)
     for (std::size_t c = 0; c < 6; ++c)
       if (r % 3 > 0) {
@@ -66,7 +66,7 @@ TEST(Published, Paper5AgreesWithItself) {
   EXPECT_EQ(figures(paper5::kTable4), 8 * 7 - 1) << "one failed for memory";
   for (std::size_t r = 0; r < paper5::kScales.size(); ++r)
     EXPECT_EQ(paper5::kTable4[r].at, std::to_string(paper5::kScales[r]));
-  // Table 2's CPU time is the average over table 1's CPU lines, up to their rounding.
+  // Table 2's CPU time is the average over table 1's CPU lines, but for rounding.
   double seconds = 0;
   for (std::size_t r = 0; r < paper5::kCpuRows; ++r)
     for (const Published& p : paper5::kTable1[r].figures) seconds += 1 / p.value / 12;

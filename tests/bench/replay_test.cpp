@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The replay of hand-made loops beside makespans computed by hand, and a real frame's recording.
+// Compares replays of hand-made loops with makespans computed by hand; and records a real frame.
 #include <papers/models/replay/simulate.hpp>
 
 #include <algorithm>
@@ -29,24 +29,24 @@ TEST(Replay, OneWorkerTakesTheSum) {
 }
 
 TEST(Replay, HalvesAreTakenByWhoIsFree) {
-  // The second takes [2, 4), and at 3 the index 1: done at 7, before the first is at 8.
+  // The second takes [2, 4), and at 3 index 1: it ends at 7, before the first at 8.
   EXPECT_EQ(replay(loop_of({8, 4, 2, 1}), 2, {}), 8);
-  // The first has 0 until 5 and then 1; the second is done with 2 and 3 at 6.
+  // The first has 0 until 5, then 1; the second has 2 and 3 until 6.
   EXPECT_EQ(replay(loop_of({5, 4, 3, 3}), 2, {}), 9);
-  // The first begins at 1 and is done with 0 at 9. The second looks at 1 again, begins 2 at 2 and
-  // 3 at 4, takes 1 at 5, begins it at 6 and ends it at 10, which the first sees at 15.
+  // The first has 0 from 1 to 9. The second finds 1 queued, begins 2 at 2 and 3 at 4, takes 1 at 5,
+  // begins it at 6 and ends it at 10, which the first notices at 15.
   EXPECT_EQ(replay(loop_of({8, 4, 2, 1}), 2, {.loop = 1, .take = 1, .join = 5}), 15);
 }
 
 TEST(Replay, InOrderTheNextGoesToWhoIsFree) {
-  // 5 and 3 beside 4 and 3: by halves it was 9.
+  // 5 and 3 beside 4 and 3; by halves it was 9.
   EXPECT_EQ(replay(loop_of({5, 4, 3, 3}, true), 2, {}), 8);
-  // The counter is one worker's at a time: at 1 the first, at 2 the second, …
+  // One worker at a time uses the counter: the first until 1, the second until 2, …
   EXPECT_EQ(replay(loop_of({10, 10}, true), 2, {.claim = 1}), 13);
 }
 
 TEST(Replay, WhoSleepsComesLate) {
-  // The first does both: its 4 of [0, 1), then the other 4, which the second only sees at 20.
+  // The first does both: [0, 1) until 4, then the other one, which the second would only see at 20.
   EXPECT_EQ(replay(loop_of({4, 4}), 2, {.wake = 20}, true), 8);
   // The second takes index 1 at 2.
   EXPECT_EQ(replay(loop_of({4, 4}), 2, {.wake = 2}, true), 6);
@@ -68,7 +68,7 @@ TEST(Replay, AFrameIsItsLoopsAndWhatIsBetween) {
   const Replay two = replay(frame, 2, {});
   EXPECT_EQ(two.loops, (std::vector<double>{8, 8}));
   EXPECT_EQ(two.ns, 10 + 8 + 20 + 8 + 7);
-  // Before the first loop workers sleep, and after 20 without one.
+  // Workers sleep before the first loop, and after 20 without one.
   EXPECT_EQ(replay(frame, 2, {.wake = 100}).ns, 10 + 15 + 20 + 8 + 7);
   EXPECT_EQ(replay(frame, 2, {.wake = 100, .linger = 15}).ns, 10 + 15 + 20 + 15 + 7);
 }
@@ -151,7 +151,7 @@ TEST_P(RecordedFrames, CoverTheFrameAndDrawTheSame) {
     EXPECT_LE(tasks, loops);
     const ReplayedFrame replayed = median_frame({&f, 1});
     EXPECT_NEAR(replay(replayed, 1, {}).ns, static_cast<double>(tasks + between), 1000);
-    // 24 bins, or 15 groups: with 64 workers there are more tasks.
+    // 24 bins, or 15 groups; 64 workers make more tasks.
     if (workers == 1) fewest = largest;
     if (workers != 1 && how != "sampled") {
       EXPECT_GT(largest, fewest);

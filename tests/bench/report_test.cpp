@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers in tables, JSON on disk.
+// Numbers in tables, and JSON files.
 #include <bench/report.hpp>
 
 #include <filesystem>

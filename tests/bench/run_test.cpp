@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How `rastrum bench` treats its arguments, and how scenes and sizes are chosen.
+// The arguments of `rastrum bench`, and the choice of scenes and sizes.
 #include <bench/bench.hpp>
 #include <bench/peers/selection.hpp>
 #include <bench/registry.hpp>
@@ -52,7 +52,7 @@ TEST(Selection, ShapesStandInBesideThoseAskedForWhereNoFileIsHere) {
   setenv("RASTRUM_SHARED", "/no-such-folder", 1);
   Selection selection(transparency_scenes(), {{64, 64}});
   selection.resolve();
-  // One of these is a shape already, and must not stand in beside itself.
+  // One of these is a shape already and must not be added twice.
   Selection peers(peer_scenes(), {{64, 64}});
   peers.resolve();
   if (shared != nullptr)

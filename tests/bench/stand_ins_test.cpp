@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The meshes that stand in for the papers' models, and the scenes they describe in words.
+// The stand-ins for the papers' models, and the scenes that the papers describe in words.
 #include <bench/contest.hpp>
 #include <bench/peers/compare.hpp>
 #include <bench/stand_ins.hpp>
@@ -19,7 +19,7 @@
 namespace rastrum::bench::stand_ins_test {
 namespace {
 
-/// Directed edges without their opposite.
+/// The number of directed edges without their opposite.
 std::size_t open_edges(const Mesh& mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   for (std::size_t i = 0; i < mesh.indices.size(); i += 3)
@@ -153,7 +153,7 @@ TEST(Contest, TimesWhatIsRightAndSaysWhyNot) {
   std::vector<Entrant> entrants(4, {"", options});
   entrants[0].name = "auto";
   entrants[1].options.rasterizer = "no-such-rasterizer";
-  entrants[2].options.cull = Cull::front;  // shows what is behind: another picture
+  entrants[2].options.cull = Cull::front;  // shows the back: another picture
   entrants[3].options.memory_limit = 1;
   const std::vector<Result> results = contest(subject, entrants, {2, 0.5});
   ASSERT_EQ(results.size(), 4U);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum bench` of the papers' tables, as smoke tests: each runs, checks its pictures and leaves
-// three files that can be read.
+// Smoke tests of the papers' tables: each runs, checks its pictures and writes three readable
+// files.
 #include <bench/bench.hpp>
 
 #include <filesystem>
@@ -26,7 +26,7 @@ TEST_P(Tables, RunsQuickly) {
   ASSERT_EQ(run(args), 0);
   const nlohmann::json j = nlohmann::json::parse(test::slurp(folder.path(bench + ".json")));
   EXPECT_EQ(j["benchmark"], bench);
-  // Something was measured: the default is in every one of these tables.
+  // The default is in every one of these tables, so there are figures.
   EXPECT_FALSE(j["figures"].empty());
   const std::string text = j["figures"].dump();
   EXPECT_EQ(text.find("WRONG"), std::string::npos);

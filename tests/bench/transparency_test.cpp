@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The tables of `rastrum bench transparency`: what is a goal missed, a lower bound, a gap. And the
-// measurement itself where no peer is.
+// The tables of `rastrum bench transparency`: missed goals, lower bounds, gaps. And the measurement
+// without any peer.
 #include <papers/paper4/bench/tables.hpp>
 
 #include <bench/scenes.hpp>
@@ -18,7 +18,7 @@
 namespace rastrum::bench::transparency_test {
 namespace {
 
-/// A row of 100,000 triangles where unsorted takes 10 ms, exact 15, and peers miss no goal.
+/// A row of 100,000 triangles: unsorted takes 10 ms, exact 15, and no goal is missed.
 TransparencyRow row() {
   TransparencyRow r;
   r.scene = "hairball";
@@ -125,7 +125,7 @@ TEST(TransparencyTables, KeepTheirFigures) {
 }
 
 TEST(TransparencyMeasure, RunsWithoutPeers) {
-  // Triangles that cross each other: more than a filter of three can hold.
+  // Triangles that cross each other, too many layers for a filter of three.
   Mesh mesh = shapes::soup(1500, 0.1F, 0.8F);
   for (std::uint32_t i = 0; i < mesh.positions.size(); ++i) mesh.indices.push_back(i);
   mesh.normals = {vertex_normals(mesh.positions, mesh.indices), {}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Handles of the C interface that free themselves, and pictures drawn by them.
+// Handles of the C interface that free themselves, and pictures by them.
 #pragma once
 
 #include <memory>
@@ -45,7 +45,7 @@ constexpr int kNumberType = std::is_same_v<T, float>           ? RASTRUM_FLOAT32
                             : std::is_same_v<T, std::uint64_t> ? RASTRUM_UINT64
                                                                : RASTRUM_INT64;
 
-/// Numbers one after the other, so many a value.
+/// Packed numbers, `channels` per value.
 template <class T>
 [[nodiscard]] rastrum_array array_of(const std::vector<T>& numbers, int channels = 1) {
   return {numbers.data(), numbers.size() / static_cast<std::size_t>(channels), kNumberType<T>,
@@ -55,7 +55,7 @@ template <class T>
   return {vectors.data(), vectors.size(), RASTRUM_FLOAT32, 3, 0};
 }
 
-/// A camera, a frame and a renderer that are as new ones.
+/// A new camera, frame and renderer.
 struct CPicture {
   int width, height;
   CScene scene{rastrum_scene_new()};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures of the C interface have the bits of those that C++ draws of the same scene.
+// The C interface's pictures have the bits of C++'s pictures of the same scene.
 #include <cstring>
 #include <numbers>
 #include <span>
@@ -26,7 +26,7 @@ constexpr unsigned kKinds = kPicture | kSurfaces | kScalars;
 constexpr double kPlaced[16] = {0.8, 0.1,  0,   0.2,  -0.1, 0.7, 0.2, 0,
                                 0,   -0.2, 0.9, -0.1, 0,    0,   0,   1};
 
-/// The camera of the tests in both languages.
+/// Sets the camera of the tests in both languages.
 void place(rastrum_camera* camera) {
   const double eye[3] = {1.5, 1, 3}, target[3] = {0, 0.1, 0}, up[3] = {0, 1, 0.1};
   expect_ok(rastrum_camera_look_at(camera, eye, target, up));
@@ -44,7 +44,7 @@ FrameOptions options() {
   return {.width = kW, .height = kH};
 }
 
-/// `instances` in C++, against what `picture` draws.
+/// Compares C++'s picture of `instances` with `picture`'s.
 void expect_same(const CPicture& picture, std::span<const InstanceView> instances,
                  const FrameOptions& o = options(), unsigned kinds = kKinds,
                  std::span<const ScalarMapping> mappings = {}) {
@@ -160,7 +160,7 @@ TEST(CPictures, LooksOfInstances) {
   instances[1].id = 77;
   instances[2] = instances[1];
   instances[2].color.reset();
-  MeshView smooth = mesh;  // a copy's attributes are its own
+  MeshView smooth = mesh;  // a copy has attributes of its own
   smooth.normals.values = s.normals;
   instances[2].geometry = smooth;
   instances[0].visible = false;
@@ -300,7 +300,7 @@ TEST(CPictures, RowsBottomUpInAWiderPicture) {
   EXPECT_EQ(hex, digest(straight.color8).hex());
 }
 
-/// The matrix of a camera has the bits of the one in C++.
+/// Expects that a camera's matrix has the bits of C++'s.
 void expect_same_camera(const CCamera& camera, const Camera& expected) {
   double got[16];
   expect_ok(rastrum_camera_get_matrix(camera.get(), kW, kH, got));
@@ -327,7 +327,7 @@ TEST(CPictures, Cameras) {
   const Camera seen = camera_from_opencv(k, matrix_from_rows(pose), kW, kH, 0.1);
   expect_same_camera(camera, seen);
 
-  // Fitting looks the way of the matrix, as in C++.
+  // Fitting keeps the matrix's direction, as in C++.
   Camera both = parallel;
   both.matrix = seen.matrix;
   const CScene scene(rastrum_scene_new());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Failures of the C interface: a status, a sentence of the thread's own, and nothing changed.
+// Failures of the C interface: a status and a message for the thread, and nothing changes.
 #include <cmath>
 #include <string>
 #include <thread>
@@ -20,7 +20,6 @@ void expect_refused(rastrum_status got, const std::string& part,
   EXPECT_TRUE(holds(rastrum_error_text(), part));
 }
 
-/// A picture of the unit square.
 CPicture square() {
   CPicture p{16, 16};
   expect_ok(

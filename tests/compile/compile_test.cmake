@@ -1,5 +1,5 @@
-# Run by ctest: compiles SOURCE with COMPILER, FLAGS and all warnings as errors. MESSAGE is empty, and
-# nothing may be said, or it is what the one error says.
+# Run by ctest: compiles SOURCE with COMPILER, FLAGS and all warnings as errors. If MESSAGE is empty there
+# must be no message, else one error with that text.
 list(TRANSFORM INCLUDES PREPEND -I)
 execute_process(
   COMMAND ${COMPILER} -std=c++20 -fsyntax-only -Wall -Wextra -Wpedantic -Werror ${FLAGS} ${INCLUDES} ${SOURCE}

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Structs that callers fill in can be written with designated initializers, each field alone, and
-// no compiler warns of the other fields. (GCC's -Wmissing-field-initializers warns of fields that
-// have no initializer of their own, even if they are a span or a string.) compile_test.cmake
-// compiles this with -Wall -Wextra -Wpedantic -Werror.
+// Callers can initialize structs by designated initializers, with any single field, without a
+// compiler warning about the other fields. (GCC's -Wmissing-field-initializers warns of fields
+// without a default initializer, even spans and strings.) compile_test.cmake compiles this with
+// -Wall -Wextra -Wpedantic -Werror.
 #include <cstdint>
 #include <type_traits>
 #include <utility>
@@ -28,7 +28,7 @@ struct Shade {
   Shade operator*(float s) const { return {value * s}; }
 };
 
-// A draw points to its program, so a temporary one has none.
+// A draw points to its program, so a temporary program makes none.
 template <class P>
 concept MakesDraws = requires(P&& program) {
   std::forward<P>(program).draw(3);
@@ -57,7 +57,8 @@ void scenes(const std::vector<Vec3>& positions, const std::vector<std::uint32_t>
   const AttributeView<Vec3> normals{.values = positions};
   const InstanceView instance{.geometry = soup};
   const InstanceView placed{.object_to_world = Mat4d::identity()};
-  // Instances are small, and refer to what is kept; what is not does not compile.
+  // Instances are small and refer to objects that are kept. A reference to a temporary does not
+  // compile.
   static_assert(sizeof(InstanceView) <= 240);
   static_assert(std::is_constructible_v<GeometryRef, const MeshView&>);
   static_assert(std::is_constructible_v<GeometryRef, const GeometryView&>);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A mistake that every first shader makes: its varying cannot be added and scaled. The compilers
-// are to say so, once, and not what follows from it (compile_test.cmake).
+// A mistake of many first shaders: the varying cannot be added and scaled. The compiler must say
+// only that, once (compile_test.cmake).
 #include <rastrum/program.hpp>
 
 namespace {

@@ -27,7 +27,7 @@ TEST(ColorOf, NamesOfCss) {
   const auto names = color_names();
   EXPECT_EQ(names.size(), 148U);
   EXPECT_TRUE(std::is_sorted(names.begin(), names.end()));
-  std::uint32_t sum = 0;  // 31 times what it was, plus 0xRRGGBB
+  std::uint32_t sum = 0;  // a checksum: previous sum · 31 + 0xRRGGBB
   for (const std::string_view name : names) {
     const auto color = color_of(name);
     ASSERT_TRUE(color) << name;
@@ -38,7 +38,7 @@ TEST(ColorOf, NamesOfCss) {
       EXPECT_EQ(color_of(std::string(name).replace(at, 4, "grey")), color) << name;
     }
   }
-  EXPECT_EQ(sum, 0xD3ADCCD4U);  // of matplotlib's CSS4_COLORS
+  EXPECT_EQ(sum, 0xD3ADCCD4U);  // the checksum of matplotlib's CSS4_COLORS
   EXPECT_EQ(color_of("blue"), (Rgba8{0, 0, 0xFF, 255}));
   EXPECT_EQ(color_of("aliceblue"), (Rgba8{0xF0, 0xF8, 0xFF, 255}));      // the first,
   EXPECT_EQ(color_of("yellowgreen"), (Rgba8{0x9A, 0xCD, 0x32, 255}));    // the last,

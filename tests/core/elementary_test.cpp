@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The elementary functions beside long double's, whose 64 bits (113 on ARM) show errors of float64
-// to 0.001 ulp: 10⁵ arguments a function, where it is used and everywhere.
+// to 0.001 ulp: 10⁵ arguments per function, in its usual range and everywhere.
 #include <rastrum/core/elementary.hpp>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kArguments = 100000;
 
-/// In units of the last place of the nearest float64.
+/// The error in units in the last place of the nearest float64.
 double error_ulp(double value, long double exact) {
   const auto nearest = static_cast<double>(exact);
   if (value == nearest && std::isinf(value)) return 0;
@@ -36,7 +36,7 @@ struct Range {
   double low, high;
 };
 
-/// Any finite number, all exponents alike.
+/// Any finite number, with all exponents equally likely.
 double any(Random& random) {
   for (;;) {
     if (const auto x = std::bit_cast<double>(random.bits()); std::isfinite(x)) return x;
@@ -92,12 +92,12 @@ TEST(Elementary, IsFaithfulWhereItIsUsed) {
 }
 
 TEST(Elementary, IsFaithfulEverywhere) {
-  // Sines of what is far away: a long double's are good to 2^63.
+  // Sines of large arguments: long double's are accurate up to 2^63.
   const auto far = [](Random& r) { return std::ldexp(r.real(-1, 1), r.integer(0, 62)); };
   for (const Function& f : {kSin, kCos}) EXPECT_LT(worst(far, f), 0.53) << f.name;
   for (const Function& f : {kAtan, kCbrt}) EXPECT_LT(worst(any, f), 0.53) << f.name;
   EXPECT_LT(worst([](Random& r) { return std::abs(any(r)); }, kLog), 0.53);
-  // Beyond: the doubles that lie nearest to multiples of π/2 (Muller, Elementary Functions, 11.2).
+  // Beyond: the doubles nearest to multiples of π/2 (Muller, Elementary Functions, 11.2).
   EXPECT_EQ(elementary::cos(0x1.6ac5b262ca1ffp849), -0x1.14ae72e6ba22fp-61);
   EXPECT_EQ(elementary::sin(0x1.fffffffffffffp1023), 0x1.452fc98b34e97p-8);
   double most = 0;
@@ -128,7 +128,7 @@ TEST(Elementary, PowersAndAngles) {
   }
 }
 
-/// Where there is nothing to round: what the libm of a C compiler says (its annex F).
+/// Special values follow the C standard's annex F.
 TEST(Elementary, OddArgumentsAreThoseOfIeee) {
   const auto same = [](double a, double b) {
     return std::isnan(a) ? std::isnan(b)

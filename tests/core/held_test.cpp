@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Owner, Shared and FunctionRef, which keep the standard library's own out of headers.
+// Owner, Shared and FunctionRef, which replace the standard library's in headers.
 #include <functional>
 #include <memory>
 #include <utility>
@@ -154,7 +154,7 @@ TEST(Function, KeepsWhatItCalls) {
     copy = kept;
   }
   EXPECT_EQ(kept(1), 6);
-  EXPECT_EQ(copy(1), 7);  // the same n
+  EXPECT_EQ(copy(1), 7);  // shares n
   EXPECT_EQ(F(std::function<int(int)>(twice))(4), 8);
   EXPECT_EQ(F(twice)(4), 8);
   EXPECT_FALSE(F(std::function<int(int)>()));

@@ -46,7 +46,7 @@ TEST(Transform, ReflectionIsTheMirrorImage) {
     const double offset = r.real(-1, 1);
     const Mat4d m = reflection(normal, offset);
     const Vec3d q = place_of(m, p);
-    // The middle lies in the plane and the way is along the normal.
+    // The midpoint lies in the plane, and the displacement is along the normal.
     EXPECT_NEAR(dot((p + q) * 0.5, normal), offset * dot(normal, normal), 1e-9);
     expect_near(cross(q - p, normal), {0, 0, 0}, 1e-9);
     expect_near(place_of(m, q), p, 1e-9);
@@ -104,10 +104,10 @@ TEST(Quaternion, SlerpTurnsAtConstantSpeedTheShorterWay) {
     const Vec3d p(random_vec(r));
     const Vec3d want = place_of(rotation(rotation_about(axis, angle * t) * a), p);
     expect_near(place_of(rotation(slerp(a, b, t)), p), want, 1e-9);
-    // −b is the same rotation.
+    // −b is the same rotation as b.
     expect_near(place_of(rotation(slerp(a, {-b.w, -b.x, -b.y, -b.z}, t)), p), want, 1e-9);
   }
-  // Ends, and two that are nearly the same.
+  // The ends, and two nearly equal rotations.
   const Quaternion a = rotation_about({1, 2, 3}, 1), b = rotation_about({1, 2, 3}, 1 + 1e-11);
   EXPECT_NEAR(dot(slerp(a, b, 0.5), a), 1, 1e-15);
   const Quaternion c = rotation_about({0, 1, 0}, 2);

@@ -6,7 +6,7 @@
 namespace rastrum::test::vec_test {
 namespace {
 
-// Rules for a vector of any size. `a` and `b` must have whole numbers that divide by two.
+// Rules for vectors of any size. `a` and `b` need even whole numbers.
 template <Vector V>
 void expect_arithmetic(V a, V b) {
   EXPECT_TRUE(a == a);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The words on whatever the build calls a device: a GPU, or the CPU (CMakeLists.txt).
+// The words on the build's device: a GPU, or the CPU (CMakeLists.txt).
 #include <gtest/gtest.h>
 
 #include <rastrum/parallel/cuda/status.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Exact transparency of a device with the colours and holes of generated scenes, for nvcc and, on
+// Exact transparency on a device with the colours and holes of generated scenes, for nvcc and, on
 // the CPU, for a C++ compiler.
 #include "layers_on_device.hpp"
 
@@ -42,7 +42,7 @@ struct PaintFragment {
     return {c.x * a * factor(8), c.y * a * factor(16), c.z * a * factor(24), c.w * a};
   }
 };
-/// LayerScene::is_hole, of scenes that have them.
+/// LayerScene::is_hole, for scenes with holes.
 struct IsNoHole {
   RASTRUM_HD bool operator()(std::uint64_t key, int x, int y) const {
     const std::uint64_t id = raster::id_of_key(key);
@@ -73,7 +73,7 @@ class OnDevice {
                                             view_of(colors_)};
     return transparency::blend_layers(exec_, layers, options, painter(), IsNoHole{}, tuning);
   }
-  /// The same by queues, which a rasterizer has filled; where one is too small, as above.
+  /// The same by queues, which a rasterizer has filled. If one is too small, by the listing.
   transparency::DeviceLayerCounts blend(const TransparencyOptions& options,
                                         const transparency::DeviceLayerTuning& tuning,
                                         const QueueRooms& rooms) {
@@ -99,7 +99,7 @@ class OnDevice {
       const auto now = parallel::to_host(exec_, counters);
       last.pieces = now[0];
       std::copy(now.begin() + 2, now.end(), last.of.begin());
-      // Kernels that make the picture look at *held.
+      // Kernels that make the picture read *held.
       is_held_ = held != nullptr && now[1] != 0;
       return last;
     };
@@ -125,7 +125,7 @@ class OnDevice {
   [[nodiscard]] PaintFragment painter() const {
     return {parallel::view_of(paint_), parallel::view_of(opaque_), by_pixel_};
   }
-  /// f(place in the frame's rows, place in the blocks of the view).
+  /// Calls f(index in the frame's rows, index in the view's blocks).
   template <class F>
   void each_pixel(F f) const {
     const auto columns = static_cast<std::size_t>((view_.x1 + 7) / 8);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Layers on whatever the build calls a device, for tests that do not know of it.
+// Layers on the build's device, for tests that do not depend on it.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,7 @@
 
 namespace rastrum::test {
 
-/// A frame on the host: pieces, the opaque surface, and what the colours of a LayerScene are made
-/// of.
+/// A frame on the host: pieces, the opaque surface, and the source of a LayerScene's colours.
 struct LayersFrame {
   int width = 0, height = 0;
   std::vector<raster::Piece> pieces;
@@ -23,25 +22,24 @@ struct LayersFrame {
   bool by_pixel = false;             ///< Paint::pixel; else Paint::triangle
 };
 
-/// Room of the queues by which layers are blended without the host (layer_queues.cuh).
+/// The sizes of the queues that blend layers without the host (layer_queues.cuh).
 struct QueueRooms {
-  bool are_there = false;               ///< else the listing blends them
-  std::size_t pieces = 0, records = 0;  ///< of these; 0: as many as a frame of any test needs
-  mutable std::uint64_t too_small = 0;  ///< bands of which a queue was, so that they were listed
+  bool are_there = false;               ///< otherwise the listing blends
+  std::size_t pieces = 0, records = 0;  ///< sizes of these queues; 0: enough for any test
+  mutable std::uint64_t too_small = 0;  ///< bands with too small a queue, which were listed
 };
 
-/// Changes keys and colours, which are rows of pixels here, as blend_layers does: in bands of
-/// `band_rows` rows, whole blocks; 0: at once. Counts are those of all bands.
+/// Changes keys and colours, rows of pixels here, like blend_layers, in bands of `band_rows` rows
+/// (whole blocks); 0: at once. Counts are of all bands.
 transparency::DeviceLayerCounts blend_on_device(LayersFrame& frame,
                                                 const TransparencyOptions& options,
                                                 const transparency::DeviceLayerTuning& tuning,
                                                 int band_rows = 0, const QueueRooms& rooms = {});
-/// Two frames alike, one after the other: by how many bytes the second made the device's memory
-/// grow.
+/// Draws the same frame twice. Returns by how many bytes the second one grew the device's memory.
 std::uint64_t growth_of_a_second_frame(const LayersFrame& frame);
 
-/// Sorts pairs, orders keys and sums up, in a team's memory: what team.cuh makes of `values`, of
-/// which there are at most so many.
+/// Sorts pairs, orders keys and sums up in a team's memory: results of team.cuh for at most
+/// kMostTeamKeys `values`.
 inline constexpr std::size_t kMostTeamKeys = 1024;
 struct TeamResult {
   std::vector<std::uint32_t> sorted, places, order, sums;

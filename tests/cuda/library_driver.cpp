@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The driver of a library of device code whose device is the CPU (library_test.cpp).
+// The driver for a library of device code whose device is the CPU (library_test.cpp).
 #include <rastrum/parallel/cuda/driver.hpp>
 
 namespace rastrum::parallel {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The library of device code as programs meet it: a file of its own, opened by its name
-// (parallel/cuda/library.hpp). Here its device is the CPU; all else is what a GPU's has.
+// The library of device code as programs use it: a file that is opened by name
+// (parallel/cuda/library.hpp). Only its device is the CPU instead of a GPU.
 #include <dlfcn.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ TEST(CudaLibrary, IsFoundByItsNameAndShowsOneFunction) {
   void* const file = ::dlopen(kCudaLibraryFile, RTLD_NOW | RTLD_NOLOAD);
   ASSERT_NE(file, nullptr);
   EXPECT_NE(::dlsym(file, parallel::kCudaLibrarySymbol), nullptr);
-  // rastrum::parallel::cuda_status(), of which it has a copy.
+  // rastrum::parallel::cuda_status(); the library has its own copy.
   EXPECT_EQ(::dlsym(file, "_ZN7rastrum8parallel11cuda_statusEv"), nullptr);
   ::dlclose(file);
 }
@@ -59,7 +59,7 @@ TEST(CudaLibrary, DrawsByItsRasterizersAndTheRows) {
     const Frame frame = draw(cuda, g.view(), g.camera);
     expect_by_device(frame, expected);
     EXPECT_TRUE(holds(frame.stats.why, "shaded on the device"));
-    EXPECT_GT(frame.stats.peak_bytes, 0U);  // accounted where the program has the account
+    EXPECT_GT(frame.stats.peak_bytes, 0U);  // counted in the program's account
   }
 }
 
@@ -79,7 +79,7 @@ TEST(CudaLibrary, ItsErrorsAreTheProgramsErrors) {
                  [&] { (void)draw(cuda, SceneBinding(scene).view(), pixel_camera(kSize, kSize)); });
 }
 
-// The token is in force for a thread, and the library has thread-local variables of its own.
+// A token is in force for a thread, and the library has its own thread-local variables.
 TEST(CudaLibrary, AStopReachesIt) {
   std::stop_source source;
   const Program program(
@@ -94,7 +94,7 @@ TEST(CudaLibrary, AStopReachesIt) {
   Targets targets{.color8 = image.view()};
   Painter cuda(device_options(kSize, kSize, Device::cuda));
   EXPECT_THROW(cuda.draw(draws, program, nullptr, targets, {}, source.get_token()), Stopped);
-  EXPECT_EQ(cuda.draw(draws, program, nullptr, targets).device, Device::cuda);  // as good as new
+  EXPECT_EQ(cuda.draw(draws, program, nullptr, targets).device, Device::cuda);  // still works
 }
 
 TEST(CudaLibrary, DrawsTerrainAndItsShadows) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A library of device code of another Rastrum: nothing of it may be read but its version.
+// A library of device code of another Rastrum. Only its version may be read.
 namespace rastrum::parallel {
 struct CudaLibrary;
 }

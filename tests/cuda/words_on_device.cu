@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every word once on the device against Serial, from the same functors. So each is instantiated by
-// nvcc, which is all that can be seen where there is no GPU; what the words compute in all their
-// cases is held by tests/parallel, on the CPU. Types are few: each costs nvcc seconds.
+// Runs every word once on the device and on Serial, with the same functors. So nvcc instantiates
+// each, which is all that can be tested without a GPU; tests/parallel tests all cases on the CPU.
+// Types are few, because each costs nvcc seconds.
 #include "words_on_device.hpp"
 
 #include <cstdint>
@@ -48,7 +48,7 @@ struct WriteResult {
   std::span<U> out;
   std::size_t per_chunk;
   RASTRUM_HD void operator()(std::size_t chunk, U x, std::size_t j) const {
-    // One thread a chunk: its results are counted in their own place.
+    // One thread per chunk: results are counted in the chunk's own place.
     U& count = out[chunk * (per_chunk + 1)];
     out[chunk * (per_chunk + 1) + 1 + count++] = x << 32 | j;
   }
@@ -56,7 +56,7 @@ struct WriteResult {
 struct SharedSum {
   U value[64];
 };
-/// Sums of 64 values by a tree: what a member reads another wrote.
+/// Sums of 64 values by a tree: members read what others wrote.
 struct TreeSum {
   std::span<const U> in;
   std::span<U> out;
@@ -81,7 +81,7 @@ struct IsOddIndex {
   RASTRUM_HD bool operator()(std::size_t i) const { return i % 2 == 1; }
 };
 
-/// A word's output on a backend. All backends get the same numbers.
+/// A word's output on a backend. All backends get the same input.
 struct Result {
   std::string word;
   std::vector<U> values;

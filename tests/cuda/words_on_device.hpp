@@ -6,8 +6,8 @@
 
 namespace rastrum::parallel::test {
 
-/// Runs every word of rastrum/parallel/cuda on the current device and on Serial; the names of those
-/// whose results differ. Throws what the device reports.
+/// Runs every word of rastrum/parallel/cuda on the current device and on Serial. Returns the names
+/// of those with different results. Throws the device's errors.
 [[nodiscard]] std::vector<std::string> words_that_differ();
 
 }  // namespace rastrum::parallel::test

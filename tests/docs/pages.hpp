@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The names that C++ blocks of README.md and docs/*.md use without declaring them, for
-// `tools/docs.py compile`. Nothing here is defined: blocks are compiled, not run.
+// `tools/docs.py compile`. Blocks are only compiled, so nothing is defined.
 #pragma once
 
 #include <cstdint>

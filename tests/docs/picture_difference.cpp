@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// picture_difference A.png B.png: prints the largest difference of a channel, 0 to 255. Ends with 1
-// where the pictures differ in size or cannot be read.
+// picture_difference A.png B.png: prints the largest difference of a channel, 0 to 255. Exits with
+// 1 if the pictures differ in size or cannot be read.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

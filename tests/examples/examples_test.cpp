@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The examples that show the interface draw the pictures whose digests are kept. Wave, which needs
-// ranks of MPI, is tested beside these (tests/mpi).
+// Compares the pictures of the examples with recorded digests. tests/mpi tests Wave, which needs
+// ranks of MPI.
 #include <cstdlib>
 #include <string>
 
@@ -18,7 +18,7 @@ namespace {
 
 class Examples : public testing::TestWithParam<const char*> {
  protected:
-  /// Runs an example in this folder; its command line without the place of the program.
+  /// Runs an example in this folder by its command line, without the program's folder.
   void run(const std::string& command) const {
     const std::string line =
         "cd '" + folder.path("").string() + "' && " RASTRUM_EXAMPLES "/" + command + " > out.txt";

@@ -1,5 +1,6 @@
-# Run by ctest: installs, looks at what is there, and builds programs against it as users would, by CMake and by
-# pkg-config: with the static libraries, as a subproject, and with the shared library, which is of the same objects.
+# Run by ctest: installs, checks what is there, and builds programs as users would, by CMake and by
+# pkg-config: with the static libraries, as a subproject, and with the shared library, which has the same
+# objects.
 cmake_minimum_required(VERSION 3.25)
 
 # --- Helpers -------------------------------------------------------------------------------------
@@ -13,8 +14,8 @@ function(run)
   set(output "${output}" PARENT_SCOPE)
 endfunction()
 
-# configure(NAME SOURCE OPTION…): into WORK_DIR/NAME. Nothing that is built there runs for long; what is linked has the
-# release build's configuration.
+# configure(NAME SOURCE OPTION…): into WORK_DIR/NAME. Builds without optimization, because the programs run
+# only briefly; what is linked has the release configuration.
 function(configure name source)
   run(${CMAKE_COMMAND} -S ${source} -B ${WORK_DIR}/${name} -G ${GENERATOR} -DCMAKE_PREFIX_PATH=${prefix}
     -DCMAKE_CXX_COMPILER=${CXX_COMPILER} -DCMAKE_C_COMPILER=${C_COMPILER}
@@ -22,7 +23,7 @@ function(configure name source)
   set(output "${output}" PARENT_SCOPE)
 endfunction()
 
-# What a program links itself, beside what comes with the compiler.
+# Checks which libraries a program links, beside those of the compiler.
 function(expect_libraries program expected)
   run(readelf -d ${program})
   string(REGEX MATCHALL "lib[a-zA-Z0-9_+-]+\\.so" libraries "${output}")
@@ -39,7 +40,7 @@ function(expect_digest)
   endif()
 endfunction()
 
-# pkg_config_program(PACKAGE COMPILER… SOURCE): compiled with what pkg-config says, and run.
+# pkg_config_program(PACKAGE COMPILER… SOURCE): compiles by pkg-config's flags and runs.
 function(pkg_config_program package)
   run(${PKG_CONFIG} --cflags --libs ${package})
   string(STRIP "${output}" flags)
@@ -67,8 +68,8 @@ function(check_version)
   endif()
 endfunction()
 
-# Only the public headers are installed, and each can be included by itself from there, with warnings
-# as errors. A header that a source of the library includes first is not tried: the build has shown it.
+# Only the public headers are installed, and each compiles alone there, with warnings as errors. Headers that
+# a source of the library includes first are left out, since the build has tested them.
 function(check_headers)
   set(public ../rastrum.h)
   foreach(folder include/rastrum papers/include/rastrum)
@@ -76,7 +77,7 @@ function(check_headers)
     list(APPEND public ${headers})
   endforeach()
   file(GLOB_RECURSE installed RELATIVE ${prefix}/include/rastrum ${prefix}/include/*)
-  list(REMOVE_ITEM installed mpi/mpi_ranks.hpp)  # there where an MPI is
+  list(REMOVE_ITEM installed mpi/mpi_ranks.hpp)  # installed only if there is an MPI
   list(SORT public)
   list(SORT installed)
   if(NOT public STREQUAL installed)
@@ -98,7 +99,7 @@ function(check_headers)
     endif()
   endforeach()
 
-  # The header of C, in both languages.
+  # The C header, in both languages.
   set(source ${WORK_DIR}/headers/rastrum.h.c)
   file(WRITE ${source} "#include <rastrum.h>\n#include <rastrum.h>\n")
   set(strict -fsyntax-only -pedantic -Wall -Wextra -Werror -I${prefix}/include)
@@ -117,8 +118,8 @@ endfunction()
 
 # --- Programs of users ---------------------------------------------------------------------------
 
-# Two of the examples, and that for MPI where there is one: the project has built all, and they include public headers
-# alone (check_includes.py).
+# Builds two examples, and the MPI one if there is MPI. The project has built all, and they include only
+# public headers (check_includes.py).
 function(check_examples)
   configure(examples ${prefix}/share/rastrum/examples)
   file(STRINGS ${WORK_DIR}/examples/CMakeCache.txt found REGEX "^Rastrum_DIR:")
@@ -136,7 +137,7 @@ function(check_examples)
   endif()
 endfunction()
 
-# A program of each of `components`; one that only renders links `library`.
+# Builds a program for each of `components`. One that only renders links only `library`.
 function(check_components kind library components)
   configure(${kind} ${HERE}/user)
   if(kind STREQUAL "shared" AND NOT output MATCHES "no component family: the published rasterizers need the static")
@@ -149,7 +150,7 @@ function(check_components kind library components)
   expect_libraries(${WORK_DIR}/${kind}/core ${library})
 endfunction()
 
-# A project of C alone.
+# A project with only C.
 function(check_c)
   configure(c ${HERE}/c -DDRAW_C=${draw_c})
   run(${CMAKE_COMMAND} --build ${WORK_DIR}/c --clean-first)
@@ -163,10 +164,10 @@ function(check_subproject)
     list(APPEND hidden -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
   endforeach()
   configure(parent ${HERE}/parent -DRASTRUM_SOURCE=${SOURCE_DIR} -DCMAKE_BUILD_TYPE= ${hidden})
-  run(${CMAKE_COMMAND} --build ${WORK_DIR}/parent)  # and nothing of it is built that nobody links
+  run(${CMAKE_COMMAND} --build ${WORK_DIR}/parent)  # nothing is built that is not linked
 endfunction()
 
-# Without CMake. The linker that is called for C has C++'s libraries from the package.
+# Without CMake. A C linker gets C++'s libraries from the package.
 function(check_pkg_config components)
   if(NOT PKG_CONFIG)
     message(STATUS "skipped: no pkg-config (Debian: pkg-config)")
@@ -195,8 +196,8 @@ endfunction()
 
 # --- The shared library --------------------------------------------------------------------------
 
-# librastrum.so of this build, and its package in the place of that of the static libraries. A build with BUILD_SHARED_LIBS
-# has the same rules alone, so that it is configured and not built.
+# Installs this build's librastrum.so and its package in place of the static ones. A build with
+# BUILD_SHARED_LIBS has only these rules, so it is configured and not built.
 function(install_shared)
   configure(only_shared ${SOURCE_DIR} -DBUILD_SHARED_LIBS=ON -DRASTRUM_BUILD_APPS=OFF -DRASTRUM_BUILD_TESTS=OFF
     -DRASTRUM_BUILD_EXAMPLES=OFF -DRASTRUM_BUILD_BENCH=OFF)
@@ -205,13 +206,12 @@ function(install_shared)
   run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${prefix} --component shared)
 endfunction()
 
-# Nothing is seen but what public headers declare, and nothing is missing that the examples call, whose objects the
-# project has compiled.
+# The library exports only what public headers declare, and everything that the examples' objects need.
 function(check_symbols)
   file(GLOB library ${prefix}/*/librastrum.so)
   run(${PYTHON} ${HERE}/shown_symbols.py ${library} ${SOURCE_DIR})
   file(GLOB objects ${BUILD_DIR}/examples/CMakeFiles/example_*.dir/*.o ${BUILD_DIR}/examples/CMakeFiles/example_*.dir/c/*.o)
-  list(FILTER objects EXCLUDE REGEX "family_row")  # it wants Rastrum::family, which is static alone
+  list(FILTER objects EXCLUDE REGEX "family_row")  # needs Rastrum::family, which is only static
   foreach(object IN LISTS objects)
     run(${CXX_COMPILER} ${object} ${library} -o ${WORK_DIR}/linked)
   endforeach()

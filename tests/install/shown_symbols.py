@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""What librastrum.so shows is what the public headers declare: prints each symbol that is not, and each function of rastrum.h
-that is missing, and fails where there is one. What of C++ is missing, the linker says.
+"""Checks that librastrum.so exports what the public headers declare: prints each other symbol, and each missing function of
+rastrum.h, and fails if there is any. The linker finds missing C++ symbols.
 
-A class has to be defined in a header, for one that is declared alone (`struct Impl;`) is an inside. Functions are looked up by
-their name: sources have none of that name to show, because public headers alone declare functions in RASTRUM_API.
+A class must be defined in a header, because one that is only declared (`struct Impl;`) is internal. Functions are looked up
+by name. This is enough, because only public headers declare functions with RASTRUM_API.
+
 usage: shown_symbols.py LIBRARY SOURCE_DIR"""
 import pathlib
 import re
@@ -12,7 +13,7 @@ import sys
 
 
 def entity(symbol):
-    """The qualified name in a demangled symbol, with its template arguments, without return type and parameters."""
+    """Returns the qualified name in a demangled symbol, with template arguments, without return type and parameters."""
     symbol = re.sub(r"^(vtable|VTT|typeinfo|typeinfo name|guard variable|non-virtual thunk) (for|to) ", "", symbol)
     symbol = re.sub(r"::operator\W.*|\[abi:\w+\]", "", symbol)
     depth, start = 0, 0

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files that are whole or absent: several at once, beside the leavings of others, and at the end of
-// a process. The program's side of it is tests/apps/signal_test.cpp.
+// Files are whole or absent: with several writers, beside leftovers of others, and when a process
+// ends. tests/apps/signal_test.cpp tests this for the program.
 #include <rastrum/io.hpp>
 
 #include <sys/stat.h>
@@ -42,7 +42,7 @@ class AtomicFiles : public testing::Test {
     EXPECT_EQ(::stat(path(name).c_str(), &info), 0) << name;
     return info.st_mode & 0777U;
   }
-  /// The name of a temporary as a process of this host forms it.
+  /// The name of a temporary file as a process of this host makes it.
   [[nodiscard]] static std::string temporary(const std::string& what) {
     char host[65] = {};
     EXPECT_EQ(::gethostname(host, sizeof host - 1), 0);
@@ -81,7 +81,7 @@ TEST_F(AtomicFiles, NoneIsSeenWhereOneFails) {
 }
 
 TEST_F(AtomicFiles, AnotherWithOurNumberIsNotInTheWay) {
-  // As the first process of every container has: what one of them has left.
+  // Leftovers of the first process of a container, which has the same id in each.
   for (int i = 0; i < 20; ++i)
     folder_.write(temporary("a." + std::to_string(::getpid()) + "." + std::to_string(i)), "left");
   AtomicFile a(path("a"));
@@ -93,7 +93,7 @@ TEST_F(AtomicFiles, AnotherWithOurNumberIsNotInTheWay) {
 
 TEST_F(AtomicFiles, OnlyWhatIsLeftIsRemoved) {
   const std::string left_here = temporary("a.1.0");
-  // Not every network file system shows the locks of other hosts.
+  // Not every network file system shows the locks of other hosts, so their files stay.
   const std::string elsewhere = ".a.1.0@elsewhere.rastrum-tmp", nobodys = ".a.1.0.rastrum-tmp";
   folder_.write(left_here, "left");
   folder_.write(elsewhere, "maybe in work");
@@ -213,7 +213,7 @@ TEST(DecodeScene, SaysWhatAWronglyNamedFileBeginsAs) {
   for (const char* format : {"ply", "stl"})
     expect_refused("it begins as a .off file does", Errc::bad_format,
                    [&] { (void)decode_scene(std::as_bytes(std::span(off)), format, "x"); });
-  // The reader of OBJ leaves out lines that it does not know.
+  // The OBJ reader skips lines that it does not know.
   const Scene obj = decode_scene(std::as_bytes(std::span(off)), "obj", "x");
   ASSERT_FALSE(obj.warnings.empty());
   EXPECT_EQ(obj.warnings.back(),

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every file of the shared folder of malformed and odd files, against the table bad_files.txt: what
-// is refused is refused with an error of the stated kind that names the file, what is drawn has the
-// stated number of triangles, and pictures equal their twins. Each file is read in a process of its
-// own with at most 1 GiB more of address space, within 2 s; under a sanitizer, whose shadow memory
-// that limit would hit, in this process and against the clock alone.
+// Reads every file of the shared folder of malformed and odd files and compares with the table
+// bad_files.txt: errors have the stated code and name the file, scenes have the stated number of
+// triangles, and pictures equal their twins. Each file is read in a process of its own with at most
+// 1 GiB more of address space, within 2 s. Sanitizers' shadow memory would exceed that limit, so
+// under one the test reads in this process and checks only the time.
 //
 // A line of the table: PATH EXPECTATION, where the expectation is one of
 //   refuse CODE         an Error of that code
 //   draw N [= PATH]     a scene of N triangles, with the corners of that other file's
 //   image WxH [= PATH]  a picture, with the pixels of that other picture (.pgm and .ppm too)
-// and what follows '#' says where the expectation comes from. A PATH with wildcards stands for
-// every file that no line names and no earlier pattern matches; the other file of "= FOLDER/" has
-// the file's own name.
+// A comment after '#' gives the source of the expectation. A PATH with wildcards stands for every
+// file that no line names and no earlier pattern matches. In "= FOLDER/" the other file has the
+// same name.
 
 #include <fnmatch.h>
 #include <sys/resource.h>
@@ -51,7 +51,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Limit of processor time, not of wall time: other programs may keep the processors busy.
+/// Processor time, not wall time, because other programs may keep the processors busy.
 #ifdef RASTRUM_TEST_SANITIZED
 constexpr double kMostSeconds = 20;
 #else
@@ -66,7 +66,7 @@ fs::path bad_dir() {
   return shared_dir() / "bad";
 }
 
-/// The files themselves; not licences, the validator's reports, buffers that glTF files read.
+/// The files to read: no licences, validator's reports, or buffers of glTF files.
 bool is_input(const fs::path& file) {
   static const std::set<std::string> kOthers = {".json", ".md", ".c", ".bin", ""};
   return kOthers.count(file.extension().string()) == 0;
@@ -138,7 +138,7 @@ std::string name_of(Errc code) {
   return "?";
 }
 
-/// Draws the scene with the reference and on threads: they must agree, and lose no triangle.
+/// Draws the scene by the reference and by threads: they must agree and lose no triangle.
 std::string draw(const Scene& scene) {
   constexpr int kSize = 64;
   const SceneBinding binding(scene);
@@ -164,7 +164,7 @@ std::string draw(const Scene& scene) {
   return {};
 }
 
-/// Checks a scene that was read, and draws it. Returns what is wrong with it.
+/// Checks a scene and draws it. Returns the first error.
 std::string examine(const Scene& scene) {
   for (const Instance& i : scene.instances)
     if (!i.geometry && i.mesh >= scene.meshes.size()) return "an instance of no mesh";
@@ -197,12 +197,12 @@ std::string compare_corners(const Scene& a, const Scene& b) {
   const auto x = corners(a), y = corners(b);
   if (x.size() != y.size()) return "its twin has another number of corners";
   for (std::size_t i = 0; i < x.size(); ++i)
-    // The ASCII twins have 6 digits behind the point.
+    // The ASCII twins have 6 decimals.
     if (!(length(x[i] - y[i]) <= 2e-6F)) return "corner " + std::to_string(i) + " differs";
   return {};
 }
 
-/// Binary PGM and PPM, 8 or 16 bit: the twins that are no PNG.
+/// Binary PGM and PPM, 8 or 16 bit: the twins that are not PNGs.
 Image<Rgba8> read_pnm(const fs::path& file) {
   const std::string bytes = slurp(file);
   std::size_t at = 2;
@@ -233,13 +233,13 @@ std::string compare_pixels(const Image<Rgba8>& a, const fs::path& twin) {
   const Image<Rgba8> b = twin.extension() == ".png" ? io::read_image(twin) : read_pnm(twin);
   if (a.width() != b.width() || a.height() != b.height()) return "its twin has another size";
   for (std::size_t i = 0; i < a.pixels().size(); ++i)
-    // The colour of a fully transparent pixel is no part of the picture.
+    // The colour of a fully transparent pixel does not count.
     if (!(a.pixels()[i] == b.pixels()[i]) && (a.pixels()[i].a != 0 || b.pixels()[i].a != 0))
       return "pixel " + std::to_string(i) + " differs from its twin";
   return {};
 }
 
-/// Reads the file; what came of it in the table's words, or what is wrong with it.
+/// Reads the file. Returns the outcome in the table's words, or an error.
 std::string outcome(const Row& row) {
   const fs::path file = bad_dir() / row.path;
   try {
@@ -280,7 +280,7 @@ std::size_t address_space() {
   return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
 }
 
-/// In a child process, whose crash or hang is an outcome like others.
+/// In a child process, so that a crash or hang is an outcome too.
 std::string outcome_within_limits(const Row& row) {
   int ends[2];
   if (::pipe(ends) != 0) return "no pipe";
@@ -307,7 +307,7 @@ std::string outcome_within_limits(const Row& row) {
 }
 #endif
 
-/// Processor time of this process and of the children that it has waited for.
+/// Processor time of this process and its finished children.
 double processor_seconds() {
   double seconds = 0;
   for (const auto who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
@@ -331,7 +331,7 @@ class BadFiles : public BadFilesTable, public testing::WithParamInterface<const 
 TEST_P(BadFiles, EndAsTheTableSays) {
   std::size_t rows = 0, drawn = 0;
   std::ofstream found;
-  // For a new table: RASTRUM_BAD_FILES_FOUND=FILE collects what happens.
+  // To make a new table: RASTRUM_BAD_FILES_FOUND=FILE collects the outcomes.
   if (const char* to = std::getenv("RASTRUM_BAD_FILES_FOUND")) found.open(to, std::ios::app);
   for (const Row& row : read_table()) {
     if (row.path.rfind(GetParam(), 0) != 0) continue;

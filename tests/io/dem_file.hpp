@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// USGS DEM files that tests write themselves: cells of 30 m, heights of half a metre.
+// USGS DEM files that tests write: cells of 30 m, heights in half metres.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files of the tests' own.
+// Temporary files of tests.
 #pragma once
 
 #include <unistd.h>
@@ -15,7 +15,7 @@
 
 namespace rastrum::test {
 
-/// A folder that is removed with all that is in it.
+/// A folder that is removed with its contents.
 class TempFolder {
  public:
   TempFolder() {
@@ -45,7 +45,7 @@ inline std::string slurp(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// The bytes of `value` as this machine has them, or turned round.
+/// The bytes of `value` in this machine's order, or reversed.
 template <class T>
 std::string raw(T value, bool swap = false) {
   std::string s(sizeof value, '\0');

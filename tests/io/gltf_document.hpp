@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// glTF documents that tests write themselves.
+// glTF documents that tests write.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ inline std::string base64(const std::string& bytes) {
   return r;
 }
 
-/// A document over `bytes` with one buffer and a view of all of it; `rest` are more members.
+/// A document over `bytes` with one buffer and one view of it; `rest` has more members.
 inline std::string document(const std::string& bytes, const std::string& rest) {
   return R"({"asset":{"version":"2.0"},"buffers":[{"byteLength":)" + std::to_string(bytes.size()) +
          R"(,"uri":"data:application/octet-stream;base64,)" + base64(bytes) + R"("}],)" +
@@ -41,7 +41,8 @@ inline std::string glb(std::string json, const std::string& bytes) {
          u32(bytes.size()) + std::string("BIN\0", 4) + bytes;
 }
 
-/// The same document, its whole numbers written as 24.0 or 24e0, by turns: JSON has no integers.
+/// The same document with whole numbers written as 24.0 and 24e0 in turn, since JSON has no
+/// integers.
 inline std::string with_points(const std::string& text) {
   std::string r;
   bool in_string = false, by_exponent = false;
@@ -63,10 +64,10 @@ inline std::string with_points(const std::string& text) {
   return r;
 }
 
-/// A document that grows: bytes with an accessor for each piece of them, then what refers to these.
+/// Builds a document: bytes, with an accessor for each piece, then members that refer to them.
 class GltfDocument {
  public:
-  /// An accessor over values of 4 bytes or less; its number. `type` as in "VEC3".
+  /// Adds an accessor over values of at most 4 bytes and returns its number. `type` is like "VEC3".
   template <class T>
   std::size_t add(const std::vector<T>& values, const std::string& type, int component_type,
                   bool normalized = false) {

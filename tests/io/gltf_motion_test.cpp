@@ -31,7 +31,7 @@ Scene read(const std::string& text) {
   return read_file("a.gltf", text);
 }
 
-/// Numbers as JSON has them, and to the last bit.
+/// Numbers as JSON, exact to the last bit.
 template <class T>
 std::string list(const std::vector<T>& values) {
   std::string r = "[";
@@ -88,14 +88,14 @@ struct Placement {
   }
 };
 
-/// Within an ulp: the oracle's own rounding may fall on the other side.
+/// Within an ulp, because the oracle's own rounding may differ.
 void expect_rounded(float got, Real exact, Real magnitude) {
   const auto ulp = static_cast<Real>(std::numeric_limits<float>::epsilon());
   EXPECT_LE(std::abs(got - exact), ulp * std::max(std::abs(exact), magnitude * 1e-7L));
 }
 
-/// A skeleton of five joints in a chain, beside nodes that must not matter, and a cloud of
-/// triangles that each hang on up to eight joints and are morphed before.
+/// A skeleton of five joints in a chain, with unrelated nodes beside, and a cloud of triangles that
+/// are morphed and then follow up to eight joints each.
 struct Skeleton {
   static constexpr std::size_t kJoints = 5, kVertices = 90;
   std::mt19937 random{7};
@@ -114,7 +114,7 @@ struct Skeleton {
       for (std::size_t i = 0; i < 3; ++i) p.t[i] = double{in(-1, 1)};
       for (std::size_t i = 0; i < 4; ++i) p.q[i] = double{in(-1, 1)};
       for (std::size_t i = 0; i < 3; ++i) p.s[i] = double{in(0.5F, 2)};
-      if (j == kJoints - 1) p.s[0] = -p.s[0];  // a mirror
+      if (j == kJoints - 1) p.s[0] = -p.s[0];  // a mirror image
       places.push_back(p);
       for (int k = 0; k < 16; ++k)
         bind.push_back(k == 15      ? 1.0F
@@ -135,7 +135,7 @@ struct Skeleton {
     }
   }
 
-  /// Node 0 holds the mesh, away from where its joints are; node 1 is joint 0's parent.
+  /// Node 0 has the mesh, away from the joints; node 1 is joint 0's parent.
   [[nodiscard]] std::string text() const {
     GltfDocument d;
     d.floats(positions, "VEC3");
@@ -209,7 +209,7 @@ TEST(GltfMotion, SkinsArePosedAtRest) {
       determinant +=
           m[0][i] * (m[1][(i + 1) % 3] * m[2][(i + 2) % 3] - m[1][(i + 2) % 3] * m[2][(i + 1) % 3]);
     mirrored += determinant < 0 ? 1U : 0U;
-    // A normal stays at right angles to what was so, and on its side.
+    // A normal stays perpendicular to its surface, on the same side.
     const Vec3 before{skeleton.normals[3 * v], skeleton.normals[3 * v + 1],
                       skeleton.normals[3 * v + 2]};
     const Vec3 side = normalize(cross(before, Vec3{0.3F, 0.9F, -0.2F}));
@@ -230,7 +230,7 @@ TEST(GltfMotion, SkinsArePosedAtRest) {
   EXPECT_LT(mirrored, Skeleton::kVertices);
 }
 
-/// A triangle on node 0 whose `path` is animated: keys at 1, 2 and 4 s.
+/// A triangle on node 0 with an animated `path`: keys at 1, 2 and 4 s.
 std::string animated(const char* path, const char* interpolation, const std::vector<float>& values,
                      const char* type) {
   GltfDocument d;
@@ -268,7 +268,7 @@ TEST(GltfMotion, KeysAreHeldJoinedOrCurved) {
   EXPECT_EQ(matrix_at(step, 2).m[0][3], 3);
   EXPECT_EQ(matrix_at(step, 3.999).m[1][3], 0);
 
-  // In, value, out: over 2 s from 3 with 1 a second to 8 with −2 a second.
+  // In-tangent, value, out-tangent: over 2 s from 3 at 1 a second to 8 at −2 a second.
   Scene cubic = read(animated(
       "translation", "CUBICSPLINE",
       {0, 0, 0, 0, 0, 0, 0, 0, 0, 9, 9, 9, 3, 0, 0, 1, 0, 0, -2, 0, 0, 8, 0, 0, 9, 9, 9}, "VEC3"));
@@ -280,7 +280,7 @@ TEST(GltfMotion, KeysAreHeldJoinedOrCurved) {
 }
 
 TEST(GltfMotion, RotationsTurnEvenlyTheShorterWay) {
-  // 0°, then 90° about z written as its negative, then 180° with the other sign again.
+  // 0°, then 90° about z with negated quaternion, then 180° with the other sign again.
   const auto h = static_cast<float>(std::numbers::sqrt2 / 2);
   Scene scene =
       read(animated("rotation", "LINEAR", {0, 0, 0, 2, 0, 0, -h, -h, 0, 0, 1, 0}, "VEC4"));
@@ -351,7 +351,7 @@ TEST(GltfMotion, MorphTargetsByTheWeightsOfMeshNodeAndAnimation) {
 
 TEST(GltfMotion, MeshesWithoutNormalsKeepNone) {
   Scene scene = read(changed(morphed("", R"([{"mesh":0}])", kMoveWeights), R"(,"NORMAL":1)", ""));
-  scene.meshes[0].normals.values.resize(3, Vec3{1, 0, 0});  // as a program makes them
+  scene.meshes[0].normals.values.resize(3, Vec3{1, 0, 0});  // like normals that a program computes
   pose(scene, 1);
   EXPECT_TRUE(scene.meshes[0].normals.empty());
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// EXT_meshopt_compression and KHR_draco_mesh_compression: what the libraries' own encoders packed
-// is read as it was, and spoilt streams are refused.
+// EXT_meshopt_compression and KHR_draco_mesh_compression: reads back what the libraries' own
+// encoders packed, and refuses damaged streams.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -71,7 +71,7 @@ struct Hills {
   }
 };
 
-/// Every stream, spoilt in one to four places, is refused or read as something sound.
+/// Damages the stream in one to four places. It must be refused, or read as a valid scene.
 template <class MakeText>
 void spoil(const std::string& stream, const MakeText& text_of) {
   std::mt19937 random(11);
@@ -94,7 +94,7 @@ void spoil(const std::string& stream, const MakeText& text_of) {
   EXPECT_GT(refused, kTimes / 20);
 }
 
-/// A triangle as it begins with its smallest vertex.
+/// A triangle that begins with its smallest vertex.
 using Corners = std::array<Vec3, 3>;
 [[maybe_unused]] std::vector<Corners> triangles(const Mesh& mesh) {
   const auto less = [](Vec3 a, Vec3 b) {
@@ -134,7 +134,7 @@ std::string pack_sequence(const Hills& h) {
   return r;
 }
 
-/// Views that are packed one behind the other in buffer 0, over a buffer that holds nothing.
+/// Packed views one behind the other in buffer 0, over a buffer without data.
 class Packed {
  public:
   void add(const std::string& stream, std::size_t count, std::size_t stride,
@@ -266,7 +266,7 @@ TEST(GltfMeshopt, SpoiltStreamsAreRefusedOrSound) {
         [&](const std::string& s) { return hills_text(h, positions, normals, s, "TRIANGLES"); });
   spoil(pack_sequence(h),
         [&](const std::string& s) { return hills_text(h, positions, normals, s, "INDICES"); });
-  // Most bits of attributes are values.
+  // Most bits of attributes are values, so headers are tested separately.
   std::string headers = positions;
   spoil(headers.substr(0, 64), [&](const std::string& s) {
     return hills_text(h, s + headers.substr(64), normals, indices, "TRIANGLES");
@@ -387,7 +387,7 @@ TEST(GltfDraco, WhatDoesNotFitIsRefused) {
     refused("lists of triangles", draco_text(s.bytes, s.vertices, s.triangles, R"(,"mode":5)"),
             Errc::unsupported);
   }
-  // A head that claims 2³² − 1 triangles, and a document that believes it.
+  // A header that claims 2³² − 1 triangles, with a document that agrees.
   const std::string head(
       "DRACO\x02\x02\x01\x00\x00\x00\xFF\xFF\xFF\xFF\x0F\xFF\xFF\xFF\xFF\x0F\0\0", 23);
   refused("would take", draco_text(head, 4294967295U, 4294967295U), Errc::out_of_memory);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// glTF documents that the tests write themselves. Files from the wild are in bad_files_test.cpp.
+// glTF documents that the tests write. Real files are in bad_files_test.cpp.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -106,8 +106,7 @@ TEST(Gltf, SparseAccessorsOverZerosAndOverBytes) {
   }
 }
 
-// Attributes that an application has added: numbers become scalars by their names; its vectors are
-// passed over.
+// Attributes of applications: numbers become scalars by name, vectors are ignored.
 TEST(Gltf, AttributesOfApplicationsAreScalars) {
   GltfDocument d;
   d.floats({0, 0, 0, 1, 0, 0, 0, 1, 0}, "VEC3");
@@ -132,7 +131,7 @@ TEST(Gltf, AttributesOfApplicationsAreScalars) {
 }
 
 TEST(Gltf, StridesAndNormalizedIntegers) {
-  // Interleaved: position of int16 normalized, padded to 8; colour of 4 × uint8.
+  // Interleaved: normalized int16 positions, padded to 8 bytes, and colours of 4 × uint8.
   std::string bytes;
   const std::int16_t xs[3] = {32767, -32768, 0};
   for (const std::int16_t x : xs)
@@ -233,7 +232,7 @@ TEST(Gltf, MaterialsAndTextures) {
   EXPECT_FALSE(s.textures[0].mipmaps);
   EXPECT_EQ(s.textures[1].wrap_u, Wrap::repeat);
   EXPECT_TRUE(s.textures[1].mipmaps);
-  // The transform is in the coordinates. A warning counts the 4 vertices of each list.
+  // The transform is applied to the coordinates. The warning counts the 4 vertices of each list.
   EXPECT_EQ(s.meshes[0].texcoords.values[3].x, 2.5F);
   EXPECT_EQ(s.meshes[0].texcoords.values[3].y, 3.0F);
   EXPECT_EQ(s.warnings.size(), 2U) << io::describe(s);
@@ -274,7 +273,7 @@ TEST(Gltf, PicturesThatCannotBeReadTakeNoOthersPlace) {
                 s.warnings, [](const std::string& w) { return w.find("texture: ") != w.npos; }),
             1)
       << io::describe(s);
-  // A stop is no picture's fault, and stays one.
+  // A stop is not a picture's error, so it ends the reading.
   std::stop_source source;
   source.request_stop();
   const std::stop_token token = source.get_token();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Height maps: what is in the file is what is read, in every type and order; what is damaged is
-// refused with its name and place.
+// Height maps are read exactly, in every type and byte order. Damaged files are refused with name
+// and place.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ std::span<const std::byte> bytes_of(const std::string& s) {
   return std::as_bytes(std::span(s.data(), s.size()));
 }
 
-/// The error of f(), which must be of `code`, say `part` and name the file.
+/// Expects that f() throws an error of `code` that says `part` and names the file.
 template <class F>
 void expect_refused(Errc code, const std::string& part, F&& f) {
   const std::string said = refusal_of(f, code);
@@ -51,7 +51,7 @@ HeightGrid read_npy(const std::string& file) {
 
 template <class T>
 void check_type(const char* kind) {
-  // 2 rows of 3; negative where the type has it.
+  // 2 rows of 3, with a negative value if the type has one.
   const T values[6] = {T(1), T(2), T(3), T(100), std::is_signed_v<T> ? T(-5) : T(5), T(6)};
   for (const bool swap : {false, true})
     for (const bool fortran : {false, true}) {
@@ -144,7 +144,7 @@ TEST(HeightRaw, RefusesOtherSizes) {
 
 // --- PNG
 
-/// Grey PNGs of 16 bit, which this library does not write.
+/// 16-bit grey PNGs, which this library does not write.
 std::string png16(int width, int height, const std::vector<std::uint16_t>& values) {
   std::string rows;
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -235,7 +235,7 @@ TEST(HeightDem, LongProfilesGoOverBlocks) {
 TEST(HeightDem, RefusesWhatIsDamaged) {
   const std::string good = dem({{0, 0, 0, {1, 2}}, {30, 0, 0, {3, 4}}});
   ASSERT_NO_THROW((void)read_dem(good));
-  // The last block is blank after its elevations, so cuts there lose nothing.
+  // The last block is blank after its elevations, so cutting there loses nothing.
   for (std::size_t n = 0; n<2048 + 144 + 12; n += n> 1000 && n < 1100 ? 1 : 13)
     expect_refused(Errc::bad_format, n < 1024 ? "first record" : "record ",
                    [&] { (void)read_dem(good.substr(0, n)); });
@@ -267,7 +267,7 @@ TEST(HeightDem, TheRealMap) {
   const auto file = shared_dir() / "data" / "terrain" / "SainteHelens.dem";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
   const HeightGrid g = io::read_heights(file);
-  EXPECT_EQ(g.heights.width(), 327);  // its A record
+  EXPECT_EQ(g.heights.width(), 327);  // as in its A record
   EXPECT_NEAR(g.units_per_cell, 30, 1e-12);
   EXPECT_TRUE(g.scale_known);
   float least = INFINITY, most = -INFINITY;
@@ -276,7 +276,7 @@ TEST(HeightDem, TheRealMap) {
     least = std::min(least, h);
     most = std::max(most, h);
   }
-  EXPECT_EQ(least, 682.0F);  // as its A record says
+  EXPECT_EQ(least, 682.0F);  // as in its A record
   EXPECT_EQ(most, 2543.0F);
 }
 

@@ -54,7 +54,7 @@ TEST(Png, RoundTripsStraightAlpha) {
   EXPECT_EQ(files_in(folder.path("")), 1U);
 }
 
-/// Whether zlib finds the stream of a PNG whole, its sum at the end too, over which libpng passes.
+/// Whether zlib accepts the stream of a PNG, with its checksum, which libpng ignores.
 bool is_sound_stream(const std::string& png) {
   std::string stream = parts_of_png(png).stream;
   z_stream z{};
@@ -74,7 +74,7 @@ bool is_sound_stream(const std::string& png) {
 
 TEST(Png, OfManyBandsIsTheSameFileForEveryNumberOfThreads) {
   const TempFolder folder;
-  // Smooth, so that the dictionary of a band matters; bands of 64, 1 and 47 rows, the last one cut.
+  // Smooth, so that a band's dictionary matters; bands of 64, 1 and 47 rows, the last one cut.
   for (const auto& [width, height] :
        {std::pair{512, 700}, {32768, 5}, {700, 94}, {700, 93}, {1, 3}}) {
     Image<Rgba8> image(width, height);
@@ -93,7 +93,7 @@ TEST(Png, OfManyBandsIsTheSameFileForEveryNumberOfThreads) {
       EXPECT_EQ(slurp(folder.path("n.png")), slurp(folder.path("1.png"))) << threads;
     }
   }
-  // Noise cannot be compressed: no band may grow beyond its room.
+  // Noise cannot be compressed: no band may exceed its buffer.
   const Image<Rgba8> noise = random_image(600, 400);
   io::write_png(folder.path("r.png"), noise.view(), 2);
   EXPECT_TRUE(std::ranges::equal(io::read_image(folder.path("r.png")).pixels(), noise.pixels()));
@@ -203,7 +203,7 @@ TEST(Png, EveryTruncationAndEveryFlippedByteIsAnErrorOrTheSamePicture) {
 }
 
 TEST(Png, ASmallFileCannotAskForAHugeImage) {
-  // A whole IHDR of 32768 × 32768 RGBA, then nothing.
+  // A valid IHDR of 32768 × 32768 RGBA, then nothing.
   const std::string bytes =
       "\x89PNG\r\n\x1A\n" +
       png_chunk("IHDR", std::string("\0\0\x80\0\0\0\x80\0\x08\x06\0\0\0", 13)) +
@@ -336,7 +336,7 @@ TEST(WritePly, RoundTripsWhatSharesThePositions) {
          .indices = {0, 1, 2, 2, 1, 3}};
   m.normals.values = {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {0, 0, -1}};
   m.texcoords.values = {{0, 0}, {1, 0.25F}, {0, 1}, {0.5F, 0.5F}};
-  for (const float red : {51 / 255.0F, 0.123F}) {  // one that bytes hold and one that they do not
+  for (const float red : {51 / 255.0F, 0.123F}) {  // one fits a byte, one does not
     m.colors.values = {{red, 0, 1, 1}, {0, 0, 0, 0}, {1, 1, 1, 1}, {0, 1, 0, 1}};
     io::write_ply(folder.path("a.ply"), m);
     const Scene s = io::read_scene(folder.path("a.ply"));

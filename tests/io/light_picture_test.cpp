@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures of light: Radiance's in each way that its pixels are written, OpenEXR's, sRGB ones.
+// Pictures of light: Radiance's with each encoding of its pixels, OpenEXR's, sRGB ones.
 #include <cmath>
 #include <random>
 #include <span>
@@ -59,7 +59,7 @@ TEST(Radiance, ReadsRunsOfChannels) {
   for (int row = 0; row < 2; ++row) {
     body += bytes_of({2, 2, 0, 8});
     for (std::size_t c = 0; c < 3; ++c) {
-      body += bytes_of({5});  // five as they are, then three
+      body += bytes_of({5});  // five literal values, then a run of three
       for (std::size_t x = 0; x < 5; ++x)
         body += flat[(static_cast<std::size_t>(row) * 8 + x) * 4 + c];
       body += bytes_of({3});
@@ -78,7 +78,7 @@ TEST(Radiance, ReadsRunsOfPixels) {
   const Image<Vec3> image = decode(radiance(body, "-Y 1 +X 6"));
   for (int x = 0; x < 5; ++x) EXPECT_EQ(image(x, 0), (Vec3{10, 20, 30} * (1.0F / 256)));
   EXPECT_EQ(image(5, 0), (Vec3{7, 7, 7} * (4.0F / 256)));
-  // 2 + 256 · 1 further ones.
+  // 2 + 256 · 1 repetitions.
   const Image<Vec3> wide =
       decode(radiance(bytes_of({9, 9, 9, 128, 1, 1, 1, 2, 1, 1, 1, 1}), "-Y 1 +X 259"));
   EXPECT_EQ(wide(258, 0), wide(0, 0));
@@ -115,7 +115,7 @@ TEST(Radiance, ThatIsUnsoundIsRefused) {
   refused("row 0: a run does not fit", bad_format, radiance(bytes_of({2, 2, 0, 8, 0, 1}) + flat));
 }
 
-// Whatever the bytes are it ends in an error or a picture.
+// Any bytes end in an error or a picture.
 TEST(Radiance, SurvivesAnyBytes) {
   std::mt19937 random(1);
   for (int i = 0; i < 3000; ++i) {
@@ -148,7 +148,7 @@ TEST(OpenExr, ColoursComeBack) {
   for (int y = 0; y < 3; ++y)
     for (int x = 0; x < 6; ++x)
       EXPECT_EQ(back(x, y), (Vec3{image(x, y).x, image(x, y).y, image(x, y).z}));
-  // Places have no colours.
+  // Positions have no colours.
   io::write_exr(folder.path("b.exr"), Image<Vec3>(4, 2).view());
   expect_refused("has no channel R", Errc::unsupported,
                  [&] { (void)io::read_light(folder.path("b.exr")); });

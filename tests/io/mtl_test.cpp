@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// MTL: each key and option that is drawn, and files as bad as they come.
+// MTL: each key and option that affects the picture, and very bad files.
 #include <cmath>
 #include <string>
 #include <unordered_map>
@@ -15,7 +15,7 @@
 namespace rastrum::test::mtl_test {
 namespace {
 
-/// The scene of a text's materials; textures are looked for in `folder`.
+/// The scene of a text's materials, with textures in `folder`.
 Scene read(std::string_view text, const std::filesystem::path& folder = "nowhere") {
   Scene scene;
   std::unordered_map<std::string, std::uint32_t> by_name;
@@ -25,7 +25,7 @@ Scene read(std::string_view text, const std::filesystem::path& folder = "nowhere
   return scene;
 }
 
-/// The only material of what a file says behind `newmtl m`.
+/// The only material of these statements after `newmtl m`.
 Material material(const std::string& statements) {
   const Scene s = read("newmtl m\n" + statements);
   EXPECT_EQ(s.materials.size(), 1U);
@@ -50,19 +50,19 @@ TEST(Mtl, NothingSaid) {
   EXPECT_TRUE(m.double_sided);
   EXPECT_TRUE(read("").materials.empty());
   EXPECT_TRUE(read("# only a comment").materials.empty());
-  EXPECT_TRUE(read("Kd 1 0 0\n").materials.empty());  // of no material
+  EXPECT_TRUE(read("Kd 1 0 0\n").materials.empty());  // belongs to no material
 }
 
 TEST(Mtl, Numbers) {
   const Material m = material(" \tKd\t.5 +2.5e-1 7\t \r\n  Ke 0 2 -1\nNs 30\nPm 0.25\n");
   EXPECT_EQ(m.base_color.x, 0.5F);
   EXPECT_EQ(m.base_color.y, 0.25F);
-  EXPECT_EQ(m.base_color.z, 1.0F);  // from 7: a colour reflects no more than there is
+  EXPECT_EQ(m.base_color.z, 1.0F);  // clamped from 7: a surface reflects no more than arrives
   EXPECT_EQ(m.emissive.y, 2.0F);
   EXPECT_EQ(m.emissive.z, 0.0F);
   EXPECT_FLOAT_EQ(m.roughness, 0.5F);  // (2 / 32)^(1/4)
   EXPECT_EQ(m.metallic, 0.25F);
-  EXPECT_EQ(material("Ns 30\nPr 0.125\n").roughness, 0.125F);  // said outright
+  EXPECT_EQ(material("Ns 30\nPr 0.125\n").roughness, 0.125F);  // given directly
   EXPECT_EQ(material("Kd 0.588 0 0").base_color.x, 0.588F);    // correctly rounded
   EXPECT_EQ(material("Kd 1e-60 0 0").base_color.x, 0.0F);
   const Vec4 grey = material("Kd 0.5\n").base_color;  // one number stands for three
@@ -86,9 +86,9 @@ TEST(Mtl, Names) {
   const Scene s = read("newmtl  a name \r\nKd 1 0 0\r\nnewmtl b\nnewmtl a name\nKd 0 1 0");
   ASSERT_EQ(s.materials.size(), 2U);
   EXPECT_EQ(s.materials[0].name, "a name");
-  EXPECT_EQ(s.materials[0].base_color.x, 1.0F);  // the first of a name
+  EXPECT_EQ(s.materials[0].base_color.x, 1.0F);  // the first of that name
   EXPECT_EQ(s.materials[1].name, "b");
-  EXPECT_EQ(s.materials[1].base_color.x, 0.0F);  // nothing of the one before
+  EXPECT_EQ(s.materials[1].base_color.x, 0.0F);  // nothing from the material before
 }
 
 TEST(Mtl, Maps) {
@@ -116,7 +116,7 @@ TEST(Mtl, Maps) {
   const Material& all = s.materials[0];
   EXPECT_EQ(all.base_color_texture, 0);
   EXPECT_EQ(all.base_color.x, 0.6F);
-  EXPECT_EQ(all.emissive_texture, 1);  // clamped: another use of the same file
+  EXPECT_EQ(all.emissive_texture, 1);  // clamped: a separate texture of the same file
   EXPECT_EQ(all.emissive.y, 1.0F);     // a map without its factor
   EXPECT_EQ(all.alpha_texture, 2);
   EXPECT_EQ(all.alpha_mode, AlphaMode::mask);
@@ -177,7 +177,7 @@ TEST(Mtl, OddBytes) {
   EXPECT_EQ(read("newmtl " + huge).materials.at(0).name, huge);
   const std::string said = warning("newmtl m\nKd " + huge + "\n");
   EXPECT_LT(said.size(), 100U);
-  // All lines wrong: still one warning.
+  // All lines are wrong, and there is one warning.
   std::string wrong = "newmtl m\n";
   for (int i = 0; i < 200000; ++i) wrong += "Kd\n";
   EXPECT_TRUE(holds(warning(wrong), "(and 199999 more)"));

@@ -91,7 +91,8 @@ TEST(Obj, ColoursAndLineContinuation) {
 }
 
 TEST(Obj, NumbersAreRoundedCorrectly) {
-  // Half way between two floats but for the last digit: read as float64 first, it rounds down.
+  // But for its last digit half way between two floats: rounding to float64 first would round it
+  // down.
   const Scene s = read("v 1.00000005960464477540 +.5e1 1e-50\nv 1 0 0\nv 0 1 1e40\nf 1 2 3\n");
   EXPECT_EQ(s.meshes[0].positions[0].x, std::nextafter(1.0F, 2.0F));
   EXPECT_EQ(s.meshes[0].positions[0].y, 5.0F);
@@ -146,7 +147,7 @@ TEST(Obj, LibrariesInTheirOrderHoweverMany) {
   folder.write("c.mtl", "newmtl two\nKd 1 1 1\nnewmtl three\nKd 0 0 1\n");
   std::string names;
   for (int i = 0; i < 20'000; ++i) names += " no" + std::to_string(i) + ".mtl";
-  // The first of a file and the others, whether they stand before or behind what they colour.
+  // The file's first library and further ones, before or after the faces that use them.
   for (const char* first : {"b.mtl c.mtl", "no0.mtl b.mtl b.mtl c.mtl"}) {
     const Scene s = io::read_scene(folder.write(
         "a.obj", std::string("mtllib ") + first + "\n" + kSquare +

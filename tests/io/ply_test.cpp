@@ -51,7 +51,7 @@ TEST(Ply, AsciiWithEverything) {
   EXPECT_EQ(m.scalars[0].values, (std::vector<double>{7, 7, 7, 7}));
 }
 
-// Other properties are scalars: of vertices, and of faces, whose triangles all have the value.
+// Other properties are scalars, of vertices or of faces, whose triangles all have the face's value.
 TEST(Ply, OtherPropertiesAreScalars) {
   const std::string vertices = std::string(kXyz) + "property double heat\nproperty uchar tag\n";
   const std::string faces =
@@ -115,7 +115,7 @@ TEST(Ply, ScalarsAreWrittenAsTheyAreRead) {
   EXPECT_THROW(io::write_ply(folder.path("b.ply"), m), Error);
 }
 
-/// The same square in each combination of types and byte orders must be the same mesh.
+/// Expects the same mesh from the square in each combination of types and byte orders.
 template <class Count, class Index, class Real>
 void expect_square(const char* count, const char* index, const char* real, bool big) {
   SCOPED_TRACE(std::string(count) + " " + index + " " + real + (big ? " big" : " little"));
@@ -199,7 +199,7 @@ TEST(Ply, LiesAreRefusedBeforeAnythingIsAllocated) {
        {std::pair{header("binary_little_endian", 2000000000, kXyz, 0, list), "2000000000"},
         {header("ascii", 2000000000, kXyz, 0, list), "2000000000"},
         {header("binary_little_endian", 1, kXyz, 2000000000, list) + vertex, "face"},
-        // A list that claims more than is left, a negative count, indices that do not exist.
+        // A list longer than the rest, a negative count, indices out of range.
         {one + '\xFF' + raw(0), "ends"},
         {header("binary_little_endian", 1, kXyz, 1, "property list char int vertex_indices\n") +
              vertex + '\xFF' + raw(0),

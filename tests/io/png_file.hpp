@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// PNG files that tests take apart and put together.
+// Takes PNG files apart and puts them together.
 #pragma once
 
 #include <zlib.h>

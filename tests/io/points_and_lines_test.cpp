@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Points and lines of files: PLY without faces, OBJ's p and l, glTF's modes 0 to 3.
+// Points and lines in files: PLY without faces, OBJ's p and l, glTF's modes 0 to 3.
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -47,7 +47,7 @@ TEST(PointFiles, PlyWithoutFacesIsACloud) {
     EXPECT_EQ(p.scalars[0].name, "intensity");
     EXPECT_EQ(p.scalars[0].values, (std::vector<double>{7, 8}));
   }
-  // No vertices, and it is an empty mesh.
+  // Without vertices it is an empty mesh.
   const Scene none = read_file("a.ply",
                                "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\n"
                                "property float y\nproperty float z\nend_header\n");
@@ -91,7 +91,7 @@ TEST(PointFiles, ObjHasPointsAndPolylines) {
   EXPECT_EQ(l.colors.size(), 5U);
   ASSERT_EQ(s.warnings.size(), 1U);
   EXPECT_TRUE(holds(s.warnings[0], "1 points and lines with too few vertices"));
-  // Alone they leave no empty mesh behind.
+  // Without faces there is no empty mesh.
   EXPECT_TRUE(read_file("a.obj", std::string(kFour) + "l 1 2\n").meshes.empty());
 }
 
@@ -183,7 +183,7 @@ TEST(PointFiles, ScenesAreAppendedPlacedAndDescribed) {
   EXPECT_EQ(s.primitive_count(), 1U + 1U + 3U + 3U);
   EXPECT_EQ(*s.instances[1].geometry, 0U);
   EXPECT_EQ(*s.instances[2].geometry, 1U);
-  // The file without materials got some that blend by its colours.
+  // The file has no materials, but its colours need one that blends.
   EXPECT_EQ(s.materials[points_of(s, 1).material].alpha_mode, AlphaMode::blend);
   EXPECT_EQ(s.materials[lines_of(s, 2).material].name, "m");
   const std::string text = io::describe(s);

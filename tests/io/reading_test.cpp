@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The budget of a document: what readers make of a file is taken from it.
+// The budget of a document: what readers allocate for a file counts against it.
 #include <string>
 #include <vector>
 
@@ -31,7 +31,7 @@ std::uint64_t bytes(const std::vector<NamedScalars>& all) {
   for (const NamedScalars& s : all) sum += bytes(s.values);
   return sum;
 }
-/// Bytes of the arrays that a file became.
+/// Bytes of the arrays of a scene.
 std::uint64_t bytes(const Scene& scene) {
   std::uint64_t sum = bytes(scene.materials);
   for (const Mesh& m : scene.meshes)
@@ -48,7 +48,7 @@ std::uint64_t bytes(const Scene& scene) {
   return sum;
 }
 
-/// Takes all that it makes, and no honest file of it needs the limit.
+/// Expects that everything allocated counts, and that an honest file stays far below the limit.
 template <class Parse>
 void expect_taken(const Parse& parse, const std::string& name, const std::string& file) {
   SCOPED_TRACE(name);
@@ -58,7 +58,7 @@ void expect_taken(const Parse& parse, const std::string& name, const std::string
   };
   const std::uint64_t made = bytes(read(file.size(), 0));
   EXPECT_GT(made, 1000U);
-  // Less than the bytes of its arrays is too little.
+  // A limit below the bytes of its arrays is too low.
   const std::string said = refusal_of([&] { (void)read(0, made - 1); }, Errc::out_of_memory);
   EXPECT_TRUE(said.starts_with(name + ": would take ")) << said;
   EXPECT_TRUE(holds(said, "--memory-limit"));
@@ -72,7 +72,7 @@ std::string repeated(const std::string& element, int times) {
 
 constexpr int kQuads = 50;
 
-/// Quads of vertices of their own, each line with `behind` it; `far` from 0.
+/// Quads with vertices of their own; each line ends in `behind`. `far` places them away from 0.
 std::string vertices(const std::string& before, const std::string& behind, bool far = false) {
   std::string s;
   for (int q = 0; q < kQuads; ++q)
@@ -159,7 +159,7 @@ TEST(Reading, EveryReaderTakesWhatItMakesFromTheBudget) {
       R"({"asset":{"version":"2.0"},"materials":[)" + repeated(R"({"name":"plain"})", 100) + "]}");
 }
 
-// Three bytes a node are no scene.
+// Nodes of three bytes each count too.
 TEST(Reading, EmptyNodesAreTakenFromTheBudget) {
   const std::string text = R"({"asset":{"version":"2.0"},"nodes":[)" + repeated("{}", 5000) + "]}";
   io::Reading reading("a.gltf", text.size(), {.memory_limit = 1 << 16});

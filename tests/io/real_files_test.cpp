@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The real files of the shared data folder, with the triangle counts its README states.
+// The real files of the shared data folder, with the triangle counts of its README.
 #include <cstdint>
 #include <filesystem>
 #include <string>

@@ -13,13 +13,13 @@
 namespace rastrum::test::report_test {
 namespace {
 
-// A scene that no reader made: what it refers to need not be there.
+// A scene that no reader made may have references out of range.
 TEST(Describe, RefusesIndicesOutOfRange) {
   Scene good;
   good.meshes.resize(2);
   good.meshes[1].positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   good.meshes[1].indices = {0, 1, 2};
-  good.instances.resize(1);  // of the mesh without triangles: the other one is read all the same
+  good.instances.resize(1);  // of the mesh without triangles; the other one is read too
   good.materials.resize(1);
   EXPECT_TRUE(holds(io::describe(good), "mesh 1"));
   const auto expect = [&](const char* part, const std::function<void(Scene&)>& change) {

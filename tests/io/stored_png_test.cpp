@@ -24,12 +24,12 @@ io::Bytes bytes_of(const std::string& s) {
   return std::as_bytes(std::span(s));
 }
 
-/// The file of a picture of several blocks of 64 KiB, in its parts.
+/// A picture of several blocks of 64 KiB as a file, in parts.
 struct Png : PngParts {
   std::string tail = png_chunk("tEXt", "after") + png_chunk("IEND", "");
 
   [[nodiscard]] std::string one() const { return head + png_chunk("IDAT", stream) + tail; }
-  /// With IDATs of 0, 1, 2, … bytes, which cut the stream's head and its sum.
+  /// With IDATs of 0, 1, 2, … bytes, which cut the stream's header and its checksum.
   [[nodiscard]] std::string many() const {
     std::string file = head;
     for (std::size_t at = 0, n = 0; at < stream.size(); at += n++)
@@ -70,8 +70,7 @@ TEST(StoredPng, IsAFileOfTheSamePicture) {
     for (const io::Bytes& part : stored.parts()) joined += io::as_text(part);
     EXPECT_NE(joined, file);
     EXPECT_TRUE(joined.ends_with(png.tail));
-    // Sound without what is told to libpng of the parts: as a file its sums are looked at. That it
-    // is stored a second time changes no byte.
+    // The joined parts are a valid file, checksums included. Storing it again changes no byte.
     const io::StoredPng again(bytes_of(joined));
     ASSERT_TRUE(again.is_checked());
     std::string twice;
@@ -93,13 +92,13 @@ TEST(StoredPng, WhatIsNotSoundIsLeftToLibpng) {
                    [&] { (void)io::decode_image(bytes_of(file), "a.png"); });
   };
   std::string flipped = png.one();
-  flipped[png.head.size() + 8 + png.stream.size()] ^= 1;  // a chunk's sum
+  flipped[png.head.size() + 8 + png.stream.size()] ^= 1;  // a chunk's checksum
   expect_unsound(flipped);
   Png bad = png;
-  bad.stream[bad.stream.size() / 2] ^= 1;  // its chunk's sum is right
+  bad.stream[bad.stream.size() / 2] ^= 1;  // its chunk's checksum is right
   expect_unsound(bad.one());
   bad = png;
-  bad.stream.back() ^= 1;  // Adler's sum, over which libpng passes
+  bad.stream.back() ^= 1;  // Adler's checksum, which libpng ignores
   expect_left_alone(bad.one());
   expect_unsound(good.substr(0, good.size() / 2));
   for (const std::size_t n : {0U, 7U, 8U, 11U, 20U, 32U, 33U, 40U})

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Runs on each rank of MPI: a picture of parts dealt to all ranks equals one renderer's in all
-// targets, by each exchange, and an error on one rank is reported by all.
+// Runs on each rank of MPI: a picture of parts on all ranks equals one renderer's in all targets,
+// by each exchange, and all ranks report an error of one rank.
 #include <cstdio>
 #include <functional>
 #include <optional>
@@ -19,7 +19,7 @@ using mpi::MpiRanks;
 
 constexpr std::uint64_t kParts = 12;
 
-/// MPI_Win_allocate_shared (below) fails if this returns true.
+/// If this returns true, MPI_Win_allocate_shared (below) fails.
 std::function<bool()> without_window;
 
 struct Way {
@@ -31,7 +31,7 @@ struct Way {
   std::uint64_t fragment_bytes = 200'000;  ///< several bands
 };
 
-/// This rank has parts rank, rank + size, … The picture is the last rank's.
+/// This rank has parts rank, rank + size, … The last rank gets the picture.
 bool equals_one_renderer(MpiRanks& ranks, const Way& way) {
   const int rank = ranks.rank(), size = ranks.size();
   Scene scene = PartsScene(5, kParts, way.with_materials).scene;
@@ -55,7 +55,7 @@ bool equals_one_renderer(MpiRanks& ranks, const Way& way) {
   return static_cast<bool>(same);
 }
 
-/// Each rank in its turn has a part that cannot be drawn.
+/// Each rank in turn has a part that cannot be drawn.
 bool all_say_the_same(int rank, int size, int failing) {
   FrameOptions frame{.width = 20, .height = 20};
   Mesh mesh = shapes::soup(3);
@@ -77,8 +77,8 @@ bool all_say_the_same(int rank, int size, int failing) {
   return false;
 }
 
-/// Where the window cannot be had on some rank, or on all, words go as messages; and what is shared
-/// again later is whole.
+/// If a window cannot be allocated on some ranks or on all, words go as messages. Memory that is
+/// shared later works.
 bool goes_without_windows() {
   bool ok = true;
   for (const int failing : {0, 1, -1}) {
@@ -96,7 +96,7 @@ bool goes_without_windows() {
                                 {.exchange = WordExchange::sparse, .taken = WordExchange::sparse});
     }
     without_window = nullptr;
-    // Less may be had.
+    // A smaller size is possible.
     const auto less = ranks.share(50);
     ok &= less.size() == 50;
     if (less.size() != 50) return false;
@@ -109,7 +109,7 @@ bool goes_without_windows() {
   return ok;
 }
 
-/// Layers on memory that ranks share, which grows and keeps its numbers; where it cannot grow they
+/// Layers in memory that ranks share, which grows and keeps its contents. If it cannot grow, layers
 /// are sent.
 bool shares_layers() {
   MpiRanks ranks(MPI_COMM_WORLD);
@@ -144,8 +144,8 @@ bool shares_layers() {
   return ok;
 }
 
-/// In each phase one rank throws, each in its turn: all say what it says, and the next frame is
-/// drawn. Returns whether; a rank that hangs ends the job after half a minute.
+/// In each phase each rank in turn throws: all ranks report its error and draw the next frame.
+/// Returns whether they do; a hang ends the job after half a minute.
 bool each_phase_ends_on_all(int rank, int size, WordExchange exchange) {
   PartsScene scene(9, 3, false);
   scene.scene.instances[0].opacity = 0.5F;
@@ -191,8 +191,8 @@ bool each_phase_ends_on_all(int rank, int size, WordExchange exchange) {
 
 void never(MPI_Comm*, int*, ...) {}
 
-/// A receive of anything that the caller has begun gets what the caller sends, and its handler of
-/// errors stays.
+/// A receive of any message that the caller has begun gets the caller's message, and the caller's
+/// error handler stays.
 bool leaves_the_caller_alone(int rank, int size) {
   MPI_Errhandler own = MPI_ERRHANDLER_NULL, then = MPI_ERRHANDLER_NULL;
   MPI_Comm_create_errhandler(never, &own);
@@ -239,8 +239,8 @@ int run() {
     ok &= equals_one_renderer(
         ranks,
         {.shader = Shader::material, .with_materials = true, .translucent = true, .samples = 4});
-    ok &= ranks.share(std::size_t{1} << 61).empty();  // its bytes would be 0
-    // These are of one machine.
+    ok &= ranks.share(std::size_t{1} << 61).empty();  // in bytes this overflows to 0
+    // All these ranks are on one machine.
     if (size > 1) ok &= equals_one_renderer(ranks, {.taken = WordExchange::shared});
     MpiRanks others(MPI_COMM_WORLD, 0, {}, false);
     ok &= others.share(8).empty();
@@ -257,7 +257,7 @@ int run() {
 }  // namespace
 }  // namespace rastrum::test
 
-/// In the place of MPI's own, which this calls: as if there were no memory.
+/// Replaces MPI's own function, which it calls, to simulate a lack of memory.
 extern "C" int MPI_Win_allocate_shared(MPI_Aint size, int unit, MPI_Info info, MPI_Comm comm,
                                        void* memory, MPI_Win* window) {
   const int code = PMPI_Win_allocate_shared(size, unit, info, comm, memory, window);

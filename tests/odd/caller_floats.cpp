@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Modes of floats and locales that a caller, or a library that it links, has set change no bit.
+// Float modes and locales of a caller, or of libraries it links, change no bit.
 #include <clocale>
 #include <cmath>
 #include <cstdint>
@@ -43,7 +43,7 @@
 namespace rastrum::test::caller_floats {
 namespace {
 
-/// The bits of the processor's register for rounding, traps and subnormal numbers.
+/// The processor's register bits for rounding, traps and subnormal numbers.
 std::uint64_t control() {
 #if defined(__x86_64__)
   return _mm_getcsr() & 0xffc0U;  // without the flags
@@ -80,7 +80,7 @@ std::vector<Mode> modes() {
 #endif
 }
 
-/// Bytes of everything that was computed.
+/// Collects the bytes of all results.
 class Log {
  public:
   template <class T>
@@ -152,7 +152,7 @@ const std::vector<std::pair<const char*, std::string>>& text_files() {
   return all;
 }
 
-/// Their inputs are made here, since the arithmetic of a caller is in its own mode.
+/// Inputs are made in advance, because a caller's arithmetic runs in its own mode.
 std::vector<Work> works() {
   std::vector<Work> all;
   Image<Vec3> light(64, 32);
@@ -286,8 +286,8 @@ std::vector<Work> works() {
                    log.add(terrain::ground_at(ground, 3.3, 4.4, options));
                  }});
   all.push_back({"files", [](Log& log) {
-                   // Made on the first call, in the ordinary mode, because std::filesystem
-                   // computes, too.
+                   // Made on the first call, in the ordinary mode, because std::filesystem computes
+                   // too.
                    static const TempFolder folder;
                    static const auto ply = folder.path("b.ply");
                    static const auto obj = folder.write(
@@ -354,7 +354,7 @@ std::vector<Work> works() {
   return all;
 }
 
-/// Runs `work` in a mode; returns whether the mode is the same afterwards.
+/// Runs `work` in a mode. Returns whether the mode is unchanged afterwards.
 template <class Work>
 void run_in(const Mode& mode, const Work& work) {
   const std::uint64_t before = control();
@@ -373,15 +373,15 @@ void run_in(const Mode& mode, const Work& work) {
   EXPECT_EQ(after, wanted) << mode.name;
 }
 
-/// Where this is, numbers have a comma: in C, as far as localedef is there to make such a locale,
-/// and in C++.
+/// While it lives, numbers have a decimal comma: in C if localedef can make such a locale, and in
+/// C++.
 class CommaNumbers {
  public:
   CommaNumbers() {
     const auto source = folder_.write("source",
                                       "comment_char %\nescape_char /\nLC_NUMERIC\ndecimal_point "
                                       "\",\"\nthousands_sep \".\"\ngrouping 3;3\nEND LC_NUMERIC\n");
-    // It warns of all that this one does not say, and fails for that.
+    // It warns about missing parts of the locale and returns an error, but the locale is made.
     (void)!std::system(("localedef -c --no-archive -i " + source.string() + " " +
                         folder_.path("comma").string() + " > /dev/null 2>&1")
                            .c_str());

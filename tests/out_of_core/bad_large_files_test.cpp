@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A bad file gets the reader's message, before a target is touched. Scenes that cannot be drawn out
+// Bad files give the reader's message before a target is touched. Scenes that cannot be drawn out
 // of core are refused by name. Memory limits are kept or refused.
 #include <algorithm>
 #include <cstdint>
@@ -35,7 +35,7 @@ Said said_by(const F& f) {
   return {"nothing", {}};
 }
 
-/// Draws it, and looks whether a pixel was touched.
+/// Draws the file and checks whether a pixel was touched.
 Said drawn(const std::filesystem::path& file, const OutOfCoreOptions& options = {}) {
   Image<Rgba8> image(20, 20);
   std::ranges::fill(image.pixels(), Rgba8{1, 2, 3, 4});
@@ -48,7 +48,7 @@ Said drawn(const std::filesystem::path& file, const OutOfCoreOptions& options = 
   return said;
 }
 
-/// "nothing", or what is said of it.
+/// Draws the file. Returns "nothing" or the error.
 std::string drawn_at_all(const std::filesystem::path& file) {
   Image<Rgba8> image(20, 20);
   FrameOptions frame{.width = 20, .height = 20};
@@ -58,7 +58,7 @@ std::string drawn_at_all(const std::filesystem::path& file) {
       .text;
 }
 
-/// The message of OutOfCoreFile for a file; if it leaves the refusal to the reader, as drawn().
+/// OutOfCoreFile's message for a file. If it leaves the error to the reader, drawn()'s.
 Said opened(const std::filesystem::path& file) {
   const Said said = said_by([&] { (void)io::LargeFile::open(file); });
   return said.text == "nothing" ? drawn(file) : said;
@@ -162,7 +162,7 @@ TEST(BadLargeFiles, GlbOfSeveralMeshesNamesWhatItIsOf) {
     EXPECT_EQ(said.code, code) << said.text;
     EXPECT_TRUE(holds(said.text, words));
   };
-  // The replacements have the same length, so that chunks stay where they are.
+  // The replacements have the same length, so that chunks stay in place.
   expect(changed(good, R"("indices":5})", R"("mode":5   })"),
          "meshes[1].primitives[0]: it is no list of triangles", Errc::unsupported);
   expect(changed(good, R"("children":[3,1]})", R"("children":[3,2]})"), "node 2 is reached twice",
@@ -173,21 +173,21 @@ TEST(BadLargeFiles, GlbOfSeveralMeshesNamesWhatItIsOf) {
                  std::string(R"("mesh":1,"skin":0)").append(18, ' ')),
          "nodes[5]: it moves", Errc::unsupported);
   std::string longer = good;
-  longer[11] = 1;  // in the header's length of the file
+  longer[11] = 1;  // in the file length of its header
   expect(longer, "its header says", Errc::bad_format);
   std::vector<Mesh> bad = meshes;
   bad[2].indices[30] = 1'000'000;
   expect(many_glb_of(bad, ""), "meshes[1].primitives[1].indices: refers to vertex 1000000 of 474",
          Errc::bad_format);
   expect(many_glb_of(meshes, R"({},{}],"images":[{"bufferView":99})"), "a.glb", Errc::bad_format);
-  // Deeper than a stack is.
+  // Deeper than the stack allows.
   const std::size_t deep = 300'000;
   expect(
       many_glb_of(meshes, R"({},{}],"extras":[)" + std::string(deep, '[') + std::string(deep, ']')),
       "nested too deep", Errc::bad_format);
 }
 
-/// Wherever a file ends: within each of its parts, and between them.
+/// Cuts a file within each of its parts and between them.
 TEST(BadLargeFiles, CutAnywhereIsAnError) {
   const TempFolder folder;
   const Mesh mesh = tangled();
@@ -212,7 +212,7 @@ TEST(BadLargeFiles, CutAnywhereIsAnError) {
   }
 }
 
-/// Numbers of a GLB that are none, not there, or too large to be multiplied.
+/// Numbers of a GLB that are invalid, missing, or overflow when multiplied.
 TEST(BadLargeFiles, GlbNumbersThatOverflowAreSaid) {
   const TempFolder folder;
   const std::string good = glb_of(tangled(), false, "{}");
@@ -271,8 +271,8 @@ TEST(BadLargeFiles, OptionsAreRefusedByName) {
          Errc::out_of_memory);
 }
 
-/// A mapped file may be read beyond its new end after it became shorter: this gives zeros and an
-/// Error, but the process lives.
+/// A mapped file may become shorter while it is read. This gives zeros and an Error, and the
+/// process survives.
 TEST(BadLargeFiles, AFileThatBecomesShorterWhileItIsReadIsNoticed) {
   const TempFolder folder;
   Mesh mesh = tangled();
@@ -306,14 +306,14 @@ TEST(BadLargeFiles, AFileThatBecomesShorterWhileItIsReadIsNoticed) {
     file->drop(chunk);
     std::filesystem::resize_file(path, 5000);
     if (!by_stl) {
-      // As a renderer's thread touches it, past every check.
+      // Like a renderer's thread, after every check.
       float last = 0;
       for (std::size_t v = 0; v < chunk.positions.size(); ++v) last = chunk.positions[v].z;
       EXPECT_EQ(last, 0);
     }
     expect_shorter(said_by([&] { file->check_length(); }));
     expect_shorter(said_by([&] { (void)file->selection(all); }));
-    // It is as long again, but who has read it meanwhile was told nothing yet.
+    // The file has its old length again, but the reader does not know yet that its data was wrong.
     std::filesystem::resize_file(path, file->bytes());
     if (!by_stl) {
       const Said said = said_by([&] { file->check_length(); });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fits of files are those of the meshes that are read, bit for bit, for any number of threads; and
-// after a first look they read only what may have an answer.
+// Fits of files equal those of the same meshes in memory, bit for bit, for any number of threads.
+// After a first look they read only what may matter.
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -31,7 +31,7 @@ std::vector<Camera> views() {
   return all;
 }
 
-/// A ball of 60,000 triangles about its centre, so that many runs have equally far vertices, too.
+/// A ball of 60,000 triangles around its centre, so that many runs have equally far vertices.
 Mesh ball() {
   Mesh mesh = shapes::sphere(170, 180);
   mesh.normals = {};
@@ -43,7 +43,7 @@ TEST(OutOfCoreFit, ForAnyNumberOfThreadsItIsTheMeshs) {
   const TempFolder folder;
   Mesh mesh = ball();
   mesh.positions[20'000].y = std::numeric_limits<float>::infinity();
-  mesh.positions.push_back({90, 0, 0});  // no triangle's
+  mesh.positions.push_back({90, 0, 0});  // belongs to no triangle
   Mat4d turned = Mat4d::identity();
   turned.m[0][1] = 0.4;
   turned.m[2][0] = -2.5;
@@ -83,7 +83,7 @@ TEST(OutOfCoreFit, OfSeveralFaultsTheFirstIsNamed) {
   }
 }
 
-/// Runs of points that are asked for one by one, and who was.
+/// Runs of points that are read on request; records which were read.
 class Runs final : public FitRanks, private FitVertices {
  public:
   std::vector<std::vector<Vec3d>> all;
@@ -155,8 +155,8 @@ TEST(OutOfCoreFit, WhatCannotHaveAnAnswerIsNotRead) {
   }
 }
 
-/// The boxes of a mesh at several nodes are found once, before anybody asks for a vertex, and are
-/// the same at each node.
+/// A mesh at several nodes has its boxes computed once, before any vertex is read, and every node
+/// uses them.
 TEST(OutOfCoreFit, AMeshAtManyNodesHasItsBoxesOnce) {
   const TempFolder folder;
   std::vector<std::string> nodes;

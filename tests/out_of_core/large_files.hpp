@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Mesh files with all that can make drawing them in chunks go wrong, and their pictures drawn in
+// Mesh files with everything that can go wrong when they are drawn in chunks, and their pictures
 // both ways.
 #pragma once
 
@@ -26,8 +26,8 @@
 
 namespace rastrum::test {
 
-/// Triangles that pass through each other and share vertices; some are there twice, far apart in
-/// the file, so that two chunks have the same depths.
+/// Triangles that cross and share vertices. Some occur twice, far apart in the file, so that two
+/// chunks have equal depths.
 inline Mesh tangled(std::uint64_t seed = 7) {
   Mesh mesh = shapes::sphere(9, 14);
   const Mesh soup = shapes::soup(120, 0.1F, 0.9F, seed);
@@ -42,7 +42,7 @@ inline Mesh tangled(std::uint64_t seed = 7) {
   return mesh;
 }
 
-/// A ball of small triangles, in no order.
+/// A ball of small triangles in random order.
 inline Mesh shuffled_ball() {
   Mesh mesh = shapes::sphere(30, 50);
   mesh.normals = {};
@@ -56,11 +56,11 @@ inline Mesh shuffled_ball() {
 }
 
 struct PlyParts {
-  int small_faces = 0;  ///< of 2, 1, 0, … corners before every fifth triangle, and at the end
+  int small_faces = 0;  ///< of 2, 1, 0, … corners, before every fifth triangle and at the end
   bool normals = false, colors = false;
   std::uint8_t alpha = 255;        ///< of every fifth vertex
-  std::string comment{};           ///< moves what follows
-  std::optional<Vec3d> wide_at{};  ///< positions are of float64, from here
+  std::string comment{};           ///< shifts what follows
+  std::optional<Vec3d> wide_at{};  ///< positions are float64, offset by this
 };
 
 inline std::string ply_of(const Mesh& mesh, const PlyParts& parts = {}) {
@@ -118,7 +118,7 @@ inline std::string stl_of(const Mesh& mesh) {
   return s;
 }
 
-/// Interleaved positions and normals, turned at its node, with a material; or at these nodes.
+/// Interleaved positions and normals with a material, rotated by its node, or at the given nodes.
 inline std::string glb_of(const Mesh& mesh, bool short_indices, const std::string& material,
                           const std::vector<std::string>& nodes = {
                               R"({"mesh":0,"translation":[0.1,0.2,0],"rotation":[0,0.6,0,0.8]})"}) {
@@ -155,8 +155,8 @@ inline std::string glb_of(const Mesh& mesh, bool short_indices, const std::strin
   return glb(std::move(text), bin);
 }
 
-/// Three meshes: one at three nodes, one of two primitives with a material each, one at no node.
-/// `meshes`: of the four primitives.
+/// Three meshes: one at three nodes, one of two primitives with their own materials, one at no
+/// node. `meshes` are the four primitives.
 inline std::string many_glb_of(const std::vector<Mesh>& meshes, const std::string& materials) {
   const auto n = [](std::size_t v) { return std::to_string(v); };
   std::string bin, accessors, views;
@@ -214,14 +214,14 @@ inline std::string glb_with(const std::string& file, std::string text) {
   return glb(std::move(text), file.substr(28 + json_of(file).size()));
 }
 
-/// The triangles of a mesh, (n, 3, 3) or (n, 9), of float32 or float64.
+/// The triangles of a mesh as (n, 3, 3) or (n, 9), float32 or float64.
 inline std::string npy_of(const Mesh& mesh, bool wide, bool nine, Vec3d at = {}) {
   const std::string count = std::to_string(mesh.indices.size() / 3);
   std::string s =
       io::npy_header_text(wide ? "<f8" : "<f4", "(" + count + (nine ? ", 9)" : ", 3, 3)"));
   for (const std::uint32_t i : mesh.indices) {
     const Vec3 p = mesh.positions[i];
-    // Which float32 does not hold.
+    // float32 cannot represent these.
     s += wide ? raw(Vec3d(p) * (1 + 1e-9) + at) : raw(p);
   }
   return s;
@@ -252,7 +252,7 @@ inline void expect_same(const Camera& a, const Camera& b) {
   EXPECT_EQ(a.orthographic_height, b.orthographic_height);
 }
 
-/// A file's picture in memory, and out of core by the options; all targets.
+/// Compares a file's picture in memory with that out of core, in all targets.
 inline OutOfCoreStats expect_same(const std::filesystem::path& file, const Camera& camera,
                                   const FrameOptions& frame, OutOfCoreOptions options,
                                   const std::string& what, bool fitted = false) {

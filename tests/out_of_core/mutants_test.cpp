@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Small files, each changed a little at random. Out of core gives the reader's error or the
-// reader's picture; or it refuses, with a reason, a file that the reader takes.
+// Small random changes of small files. Out of core gives the reader's error or picture, or refuses,
+// with a reason, a file that the reader accepts.
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
@@ -60,7 +60,7 @@ Outcome mapped(const std::filesystem::path& file) {
   });
 }
 
-/// One to three changes, many of them in the header.
+/// One to three changes, many in the header.
 std::string mutant_of(std::string bytes, Random& random) {
   const auto place = [&] {
     const auto last = static_cast<int>(bytes.size()) - 1;
@@ -68,7 +68,7 @@ std::string mutant_of(std::string bytes, Random& random) {
         random.integer(0, random.integer(0, 1) == 0 ? last : std::min(last, 400)));
   };
   for (int n = random.integer(1, 3); n > 0 && !bytes.empty(); --n) {
-    const std::size_t at = place();  // first, since compilers differ in the order of arguments
+    const std::size_t at = place();  // before the call, since the order of arguments is unspecified
     switch (random.integer(0, 6)) {
       case 0:
         bytes[at] = static_cast<char>(random.integer(0, 255));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures of files that are not read are those of files that are, bit for bit: every target, for
-// chunks of one triangle to all, opaque and translucent, with one sample and several, with normals
-// of the file, of faces and computed, in one band and in many.
+// Pictures of unread files equal those of read files, bit for bit: every target, for chunks of one
+// triangle to all, opaque and translucent, with one sample and several, with normals from the file,
+// of faces and computed, in one band and many.
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -39,7 +39,7 @@ TEST(OutOfCore, ChunksOfEverySizeGiveTheBitsOfOneMesh) {
   for (const std::uint64_t chunk : {1U, 7U, 64U, 100000U})
     for (const float opacity : {1.0F, 0.3F})
       for (const Camera& camera : {outside(), inside()}) {
-        if (chunk == 1 && opacity < 1) continue;  // slow, and the same as 7
+        if (chunk == 1 && opacity < 1) continue;  // slow, and like 7
         const OutOfCoreStats stats = expect_same(
             ply, camera, frame_of(97, 71, Shader::phong, opacity), {.chunk_triangles = chunk},
             std::to_string(chunk) + " " + std::to_string(opacity));
@@ -80,7 +80,7 @@ TEST(OutOfCore, ColoursMakeLayersOfAllOrOfNone) {
       expect_same(file, outside(), frame_of(64, 64, shader), {.chunk_triangles = 50},
                   std::to_string(alpha) + " " + std::string(name(shader)));
     }
-  // The translucent vertex is out of sight: what is seen is blended nevertheless.
+  // The translucent vertex is out of sight, but visible surfaces are blended anyway.
   Mesh alone = mesh;
   alone.positions.insert(alone.positions.begin(), {Vec3{0, 0, 50}});
   for (std::uint32_t& i : alone.indices) ++i;
@@ -169,7 +169,7 @@ TEST(OutOfCore, GlbWhoseWholeNumbersHaveAPoint) {
   }
 }
 
-/// Nodes count for the limit, too: each takes JSON and an instance, whatever its mesh.
+/// Nodes count against the limit too: each takes JSON and an instance.
 TEST(OutOfCore, MemoryOfNodesCounts) {
   const TempFolder folder;
   const auto write = [&](const char* name, int count) {
@@ -187,7 +187,7 @@ TEST(OutOfCore, MemoryOfNodesCounts) {
   });
 }
 
-/// Nodes without a mesh are no parts, and there all the same.
+/// Nodes without a mesh are not parts, but take memory too.
 TEST(OutOfCore, MemoryOfJsonCounts) {
   const TempFolder folder;
   std::vector<std::string> nodes(60'000, "{}");
@@ -201,10 +201,10 @@ TEST(OutOfCore, MemoryOfJsonCounts) {
   EXPECT_GT(draw(256).seen, 0U);
   expect_refused("a memory limit of 62914560 bytes is too little", Errc::out_of_memory,
                  [&] { (void)draw(60); });
-  // Before the document is made of its text.
+  // Refused before the text becomes a document.
   expect_refused("its JSON alone takes about", Errc::out_of_memory,
                  [&] { (void)OutOfCoreFile(file, std::uint64_t{10} << 20); });
-  // Before a scene is made of its nodes.
+  // Refused before nodes become a scene.
   expect_refused("its nodes and JSON take about", Errc::out_of_memory,
                  [&] { (void)OutOfCoreFile(file, std::uint64_t{24} << 20); });
 }
@@ -237,7 +237,7 @@ TEST(OutOfCore, NpyOfTriangles) {
       OutOfCoreOptions options{.chunk_triangles = 45, .prepare = crease, .neighbours = true};
       expect_same(file, inside(), frame, options, what + " creases", true);
     }
-  // The same triangles are the same picture, whatever holds them.
+  // The same triangles give the same picture from any file format.
   const Scene npy = io::read_scene(folder.write("b.npy", npy_of(mesh, false, false)));
   const Scene stl = io::read_scene(folder.write("b.stl", stl_of(mesh)));
   EXPECT_EQ(npy.meshes[0].positions, stl.meshes[0].positions);
@@ -317,7 +317,7 @@ TEST(OutOfCore, FacesOfFewerThanThreeCornersMakeNoTriangle) {
 TEST(OutOfCore, AFitSeesWhatTheReaderSees) {
   const TempFolder folder;
   Mesh mesh = tangled();
-  mesh.positions.push_back({90, 0, 0});  // no triangle's
+  mesh.positions.push_back({90, 0, 0});  // belongs to no triangle
   mesh.positions[3].x = std::numeric_limits<float>::quiet_NaN();
   for (const auto& file :
        {folder.write("a.ply", ply_of(mesh)), folder.write("a.stl", stl_of(mesh))}) {
@@ -360,7 +360,7 @@ TEST(OutOfCore, VerticesThatLieFarApartAreCopied) {
   }
 }
 
-/// Small triangles one after the other along x, many of them outside of the picture.
+/// Small triangles in a row along x, many of them outside of the picture.
 Mesh row_of(int count) {
   Mesh mesh;
   Random random(5);
@@ -380,7 +380,7 @@ Mesh row_of(int count) {
 
 TEST(OutOfCore, ChunksOutsideOfThePictureAreNotRead) {
   const TempFolder folder;
-  // Boxes of a look at all are of 16,384 triangles in a row.
+  // The first look makes boxes of 16,384 consecutive triangles.
   Mesh mesh = row_of(70'000);
   const FrameOptions frame = frame_of(60, 50, Shader::flat);
   for (const auto& file : {folder.write("a.ply", ply_of(mesh)), folder.write("a.stl", stl_of(mesh)),
@@ -394,15 +394,15 @@ TEST(OutOfCore, ChunksOutsideOfThePictureAreNotRead) {
     EXPECT_GT(stats.skipped, 2U);
     expect_same(file, inside(), frame, {.chunk_triangles = 8000}, "from inside", true);
   }
-  // Dropped triangles are counted, wherever they lie.
+  // Dropped triangles are counted wherever they are.
   mesh.positions[5].y = std::numeric_limits<float>::infinity();
   const OutOfCoreStats stats = expect_same(folder.write("b.ply", ply_of(mesh)), outside(), frame,
                                            {.chunk_triangles = 8000}, "not finite", true);
   EXPECT_EQ(stats.dropped, 1U);
 }
 
-/// Wavy sheets of 2 n² triangles each, one behind the other, the farthest first; then the nearest
-/// once more, in the same place.
+/// Wavy sheets of 2 n² triangles each, the farthest first; then the nearest once more in the same
+/// place.
 Mesh sheets(int n, int count) {
   Mesh mesh;
   for (int s = 0; s <= count; ++s) {
@@ -443,12 +443,12 @@ TEST(OutOfCore, ChunksBehindWhatIsThereAreNotRead) {
       expect_same(file, outside(), frame, options, what + " from afar", true);
       return stats.skipped;
     };
-    // Translucent chunks are left out only where they are outside. Three opaque sheets lie behind
-    // the nearest, each with at least two chunks in the picture; some chunks are begun before those
-    // in front of them are drawn.
+    // Translucent chunks are skipped only outside of the picture. Three opaque sheets are behind
+    // the nearest, each with at least two visible chunks. Some chunks begin before those in front
+    // are drawn.
     EXPECT_GE(skipped(1), skipped(0.5F) + 4);
   }
-  // Slivers may reach beyond their corners: with long edges nothing is left out.
+  // Slivers may reach beyond their corners, so long edges prevent skipping.
   Mesh slivers = mesh;
   for (std::size_t t = 0; t < slivers.indices.size(); t += 3 * 16000)
     slivers.indices[t + 2] = slivers.indices[t] + 10;
@@ -461,7 +461,7 @@ TEST(OutOfCore, HiddenChunksOfRandomMeshesChangeNoBit) {
   Random random(31);
   std::uint64_t skipped = 0;
   for (int round = 0; round < 6; ++round) {
-    // Pieces of a sheet, bent, anywhere before the eye and in any order.
+    // Bent pieces of a sheet, anywhere in front of the eye, in any order.
     const Mesh piece = sheets(91, 1);
     Mesh mesh;
     for (int k = 0; k < 6; ++k) {
@@ -499,7 +499,8 @@ TEST(OutOfCore, LaterPassesReadTheChunksOfTheirRows) {
     options.neighbours = true;
     const OutOfCoreStats stats = expect_same(file, outside(), frame, options, "rows");
     EXPECT_GT(stats.bands, 3U);
-    // A first look at all, then in each band its own, and who has neighbours in it.
+    // After a first look at everything, each band reads its own chunks and those with neighbours in
+    // it.
     EXPECT_LT(stats.chunks, stats.skipped);
   }
 }

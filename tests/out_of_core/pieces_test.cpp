@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures that are drawn in pieces, since what is seen does not fit at once: bands of rows, bins,
-// and rectangles of pixels within one.
+// Pictures drawn in pieces, because the visible triangles do not fit at once: bands of rows, bins,
+// and rectangles of pixels in one bin.
 #include <cstdint>
 
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ TEST(OutOfCore, PiecesOfBinsChangeNoBit) {
       }
 }
 
-/// Small triangles in no order within a box of this side.
+/// Small triangles in random order within a box of this side.
 Mesh heap_of(std::uint32_t triangles, Vec3 at, double side) {
   Mesh mesh;
   Random random(9);
@@ -89,7 +89,7 @@ TEST(OutOfCore, LayersOfOneBinThatDoNotFitAtOnce) {
 TEST(OutOfCore, LayersOfOnePixelThatDoNotFitAreRefusedBeforeAnythingIsDrawn) {
   const TempFolder folder;
   Mesh mesh = heap_of(2'000, {-0.6F, -0.3F, 0}, 0.4);
-  // Each covers the same few pixels.
+  // All of them cover the same few pixels.
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
   mesh.positions.insert(mesh.positions.end(), {{0.5, 0.5, 0}, {0.6F, 0.5, 0}, {0.5, 0.6F, 0}});
   for (int i = 0; i < 150'000; ++i)
@@ -107,7 +107,7 @@ TEST(OutOfCore, LayersOfOnePixelThatDoNotFitAreRefusedBeforeAnythingIsDrawn) {
   };
   expect_refused("a memory limit of 27262976 bytes is too little, about 325362720 are needed",
                  Errc::out_of_memory, draw);
-  EXPECT_LE(pieces, 2);  // the whole picture and that pixel are tried
+  EXPECT_LE(pieces, 2);  // it tries the whole picture and that pixel
   options.memory_limit = 325'362'720;
   draw();
 }
@@ -124,7 +124,7 @@ TEST(OutOfCore, RowsAtOnceChangeNoBit) {
         FrameOptions frame = frame_of(70, 200, Shader::phong, opacity);
         frame.samples = samples;
         expect_same(ply, outside(), frame, {.chunk_triangles = 400, .rows = rows}, "rows");
-        // With 128 rows, more triangles of a band are seen than may be drawn at once.
+        // With 128 rows a band has more visible triangles than may be drawn at once.
         expect_same(ply, outside(), frame,
                     {.chunk_triangles = 400,
                      .band_triangles = rows == 128 ? 3000U : 0U,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rules that depend on the whole file and not on a selection of its triangles: whether positions
-// stay float64, the unit of colours, whether attributes of STL are colours.
+// Rules that depend on the whole file, not on a selection of its triangles: whether positions stay
+// float64, the unit of colours, whether STL attributes are colours.
 #include <cstdint>
 #include <string>
 
@@ -40,7 +40,7 @@ TEST(OutOfCoreWholeFile, PositionsFarAwayStayFloat64) {
     }
 }
 
-/// float32 would put all that is seen at one place.
+/// In float32 everything visible would collapse to one place.
 TEST(OutOfCoreWholeFile, WhatIsSeenOfAFarFileMayBeSmall) {
   const TempFolder folder;
   Mesh mesh = tangled(13);
@@ -63,7 +63,7 @@ TEST(OutOfCoreWholeFile, AttributesOfStlAreColoursWhereAnyIs) {
   const TempFolder folder;
   const Mesh mesh = tangled(11);
   const std::string plain = stl_of(mesh);
-  // Only the last facet, a copy of an early one, shows it.
+  // Only the last facet, a copy of an early one, has a colour.
   for (const std::string_view header : {"", "COLOR=\x10\x20\xF0\xFF"}) {
     std::string bytes = plain;
     bytes.replace(0, header.size(), header);
@@ -93,7 +93,7 @@ std::string colored_ply(const Mesh& mesh, const std::string& type, double most, 
   s += "end_header\n";
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     s += raw(mesh.positions[v]);
-    // The largest is the last vertex's.
+    // The last vertex has the largest value.
     if (!of_faces)
       s += raw(static_cast<T>(v + 1 == mesh.positions.size() ? most : 1)) +
            raw(static_cast<T>(v % 2)) + raw(T{0});

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ticks and how they are written; bars, axes and boxes: where they lie, what hides them, and golden
-// pictures.
+// Ticks and their text; the places and hiding of bars, axes and boxes; golden pictures.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -45,9 +44,9 @@ TEST(Ticks, AreRoundNumbersWrittenAlike) {
            {1e-9, 4e-9, 3, "1×10⁻⁹ 2×10⁻⁹ 3×10⁻⁹ 4×10⁻⁹"},
            {1000.1, 1000.3, 2, "1000.1 1000.2 1000.3"},
            {7, 7, 5, "7"},
-           // One is wanted, and no multiple of 10 lies within.
+           // One tick is wanted, but there is no multiple of 10.
            {220.54299926757812, 226.43099975585938, 1, "225"},
-           // Logarithms have decades, and within a decade round numbers.
+           // Logarithms have decades, with round numbers between.
            {0.01, 100, 5, "0.01 0.1 1 10 100", true},
            {1, 100, 8, "1 2 5 10 20 50 100", true},
            {3e-7, 2e9, 5, "10⁻⁴ 10⁰ 10⁴ 10⁸", true},
@@ -91,7 +90,7 @@ TEST(ScalarBar, HasItsColoursInOrder) {
     Image<Rgba8> picture(320, 240);
     overlay::draw_scalar_bar({.color8 = picture.view()},
                              {.colors = kColors, .discrete = discrete, .title = "Speed"});
-    // The column through the middle of the bar: its pixels that are the colours.
+    // Finds the column through the bar: the one with the most pixels of the map's colours.
     int column = 0, best = 0;
     for (int x = 0; x < 320; ++x) {
       int n = 0;
@@ -142,7 +141,7 @@ TEST(Bounds, AreHiddenBehindWhatIsNearer) {
     for (const Rgba8 c : picture.pixels()) n += c.a > 100;
     return n;
   };
-  // Numbers remain; near = 0.01: reversed depth 0.01 / 4 cuts the box in two.
+  // Numbers stay. near = 0.01, so reversed depth 0.01 / 4 hides half of the box.
   const std::size_t all = drawn(0), none = drawn(1), half = drawn(0.01F / 4.9F);
   EXPECT_GT(all, none + 200);
   EXPECT_GT(none, 100U);
@@ -154,13 +153,12 @@ TEST(Bounds, AreHiddenBehindWhatIsNearer) {
   EXPECT_THROW(overlay::draw_bounds(canvas, camera, {0, 0, std::nan("")}, {0, 1, 1}), Error);
   Image<float> other(21, 15);
   EXPECT_THROW(overlay::draw_bounds(canvas, camera, {0, 0, 0}, {1, 1, 1}, other.view()), Error);
-  // From within, and with the box behind the eye, nothing goes astray.
+  // From inside, and with the box behind the eye, nothing appears in wrong places.
   overlay::draw_bounds(canvas, {.eye = {0, 0, 0.5}}, {-1, -1, -1}, {1, 1, 1});
   overlay::draw_bounds(canvas, {.eye = {0, 0, -5}, .target = {0, 0, -6}}, {-1, -1, -1}, {1, 1, 1});
 }
 
-// A fitted camera that sees so much more has all corners of the box in the picture, and a tenth of
-// it around them.
+// A fitted camera with this room shows all corners of the box, with a tenth around them.
 TEST(Bounds, HaveRoomInTheirPicture) {
   const Scene scene = shapes::scene_from_spec("torus_knot");
   const SceneBinding binding(scene);

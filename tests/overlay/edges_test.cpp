@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Edges of the triangles in view: which sides are drawn, how wide, the same bits everywhere.
+// Edges of visible triangles: which sides are drawn, their width, equal bits everywhere.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -39,7 +39,7 @@ int count_sides(const MeshView& mesh, double angle) {
   return count_sides(SceneView{.instances = {&instance, 1}}, angle);
 }
 
-/// Quads of four corners each, one after the other; the edges of what a camera sees of them.
+/// Quads of four corners each, and the edges of those that a camera sees.
 struct Quads {
   using Corners = std::vector<std::vector<Vec3>>;
   explicit Quads(Corners of_each) : corners(std::move(of_each)) {
@@ -61,7 +61,7 @@ struct Quads {
   test::KeptInstances instances;
 };
 
-/// Its triangles share no vertex.
+/// The same triangles without shared vertices.
 Mesh soup(const Mesh& mesh) {
   Mesh apart;
   for (const std::uint32_t i : mesh.indices) apart.positions.push_back(mesh.positions[i]);
@@ -76,15 +76,15 @@ TEST(SceneEdges, AreThoseOfFacesThatMeetAtMoreThanAnAngle) {
     EXPECT_EQ(count_sides(mesh.view(), 89), 24);
     EXPECT_EQ(count_sides(mesh.view(), 91), 0);
   }
-  // A triangle alone has borders, and so has an edge of three.
+  // A single triangle has border edges, and so has an edge of three triangles.
   Mesh fins{.positions = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {-1, 0, 0}, {0, 0, 1}},
             .indices = {0, 1, 2, 1, 0, 3}};
   EXPECT_EQ(count_sides(fins.view(), 30), 4);  // they lie in one plane
-  fins.indices = {0, 1, 2, 0, 1, 3};           // the same, turned over: no crease either
+  fins.indices = {0, 1, 2, 0, 1, 3};           // the same, flipped: no crease either
   EXPECT_EQ(count_sides(fins.view(), 30), 4);
   fins.indices = {0, 1, 2, 1, 0, 3, 0, 1, 4};
   EXPECT_EQ(count_sides(fins.view(), 30), 9);
-  // A triangle with two corners in one place lies between no others.
+  // A degenerate triangle is no neighbour.
   fins.indices = {0, 1, 2, 0, 0, 1, 1, 0, 3};
   EXPECT_EQ(count_sides(fins.view(), 30), 4);
 }
@@ -97,7 +97,7 @@ TEST(SceneEdges, LeaveOutWhatCutsFaces) {
   const std::vector<std::uint32_t> quads{0, 1, 2, 4, 4, 2, 3, 3};
   mesh.indices = quads;
   mesh.faces = {FaceKind::quads, {}};
-  // The other has a corner twice, so that its second triangle is none.
+  // The other one repeats a corner, so its second triangle is degenerate.
   EXPECT_EQ(count_sides(mesh, 0), 4 + 3);
   mesh.faces = {FaceKind::strips, {}};
   mesh.indices = ring;
@@ -122,7 +122,7 @@ TEST(SceneEdges, CountPrimitivesThroughInstances) {
 }
 
 TEST(Edges, AreAsWideAsAskedAndHiddenWithWhatHidesThem) {
-  // 10 px a unit: a unit square before one of 4 units behind it, which hides its upper edges.
+  // 10 px a unit: a unit square hides the upper edges of a larger one of 4 units behind it.
   const Quads quads(
       Quads::Corners{{{-2, -2, -1}, {2, -2, -1}, {2, 2, -1}, {-2, 2, -1}},
                      {{-0.5F, -0.5F, 0}, {0.5F, -0.5F, 0}, {0.5F, 0.5F, 0}, {-0.5F, 0.5F, 0}}});
@@ -133,9 +133,9 @@ TEST(Edges, AreAsWideAsAskedAndHiddenWithWhatHidesThem) {
                       .far_plane = 20};
   for (const double width : {1.0, 2.5})
     EXPECT_TRUE(test::pixels_are_near(quads.factor(camera, 60, width), 1e-6, [&](int x, int y) {
-      // From the middle, px.
+      // Distance from the centre, px.
       const double away = std::max(std::fabs(x + 0.5 - 30), std::fabs(y + 0.5 - 30));
-      double inside = INFINITY;  // of the edge of what is seen
+      double inside = INFINITY;  // of the visible edge
       if (away < 5)
         inside = 5 - away;
       else if (away < 20)
@@ -164,7 +164,7 @@ TEST(Edges, AreTheSameBitsForThreadsInstructionSetsAndAlgorithms) {
 }
 
 TEST(Edges, OfTrianglesThatReachBehindTheEyeAreStraight) {
-  // A floor of one square that begins behind the eye: its sides meet at the horizon's middle.
+  // A floor of one square that begins behind the eye. Its sides meet at the middle of the horizon.
   const Quads floor(Quads::Corners{{{-1, -1, 1}, {1, -1, 1}, {1, -1, -50}, {-1, -1, -50}}});
   constexpr int kSize = 100;
   const Image<float> factor = floor.factor({.eye = {0, 0, 0}, .target = {0, 0, -1}}, kSize, 2);

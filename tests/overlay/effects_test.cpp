@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ambient occlusion, eye-dome lighting, silhouettes: the same bits over threads, instruction sets
-// and layouts, and their formulas against float64.
+// Ambient occlusion, eye-dome lighting and silhouettes: equal bits for all threads, instruction
+// sets and layouts, and their formulas in float64.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -65,7 +65,7 @@ constexpr int kWide = 160, kHigh = 120;
 /// Looks along −z.
 const Camera kAhead{.eye = {0, 0, 0}, .target = {0, 0, -1}};
 
-/// A picture of planes by hand: depth and normal of each pixel.
+/// A picture made from planes: f gives the depth and normal of each pixel.
 template <class F>
 Drawn made(int width, int height, F&& f) {
   Drawn d{kAhead, Image<float>(width, height), Image<Vec3>(width, height),
@@ -82,7 +82,7 @@ Drawn made(int width, int height, F&& f) {
   return d;
 }
 
-/// Two walls that meet at x = 0, z = −4, at a right angle, open towards the eye.
+/// Two walls at a right angle that meet at x = 0, z = −4 and open towards the eye.
 Drawn corner() {
   const auto half = static_cast<float>(std::numbers::sqrt2 / 2);
   return made(kWide, kHigh, [&](double u, double) {
@@ -94,7 +94,7 @@ TEST(Effects, AreTheSameBitsForThreadsInstructionSetsAndLayouts) {
   for (const bool orthographic : {false, true})
     for (const auto& [width, height] : {std::pair{331, 203}, {64, 48}, {5, 3}}) {
       const Drawn d = drawn("gyroid?cells=24", width, height, orthographic);
-      // Rows from the bottom up in memory, farther apart than they are long.
+      // Rows are stored bottom-up, with gaps between them.
       const int stride = width + 7;
       std::vector<float> turned(static_cast<std::size_t>(stride * height));
       const ImageView<float> view{turned.data() + stride * (height - 1), width, height, -stride};
@@ -133,8 +133,8 @@ TEST(Effects, AreTheSameBitsForThreadsInstructionSetsAndLayouts) {
     }
 }
 
-// Occlusion works on tiles of 128 × 32 px in bands for threads: rows at once, and rows cut where
-// lanes may begin, are the same bits.
+// Occlusion works on tiles of 128 × 32 px in bands. Whole rows and rows that are cut where lanes
+// may begin give the same bits.
 TEST(Effects, OcclusionIsTheSameBitsHoweverRowsAreCut) {
   constexpr int kWidth = 301, kHeight = 71;
   for (const bool by_depth : {false, true}) {
@@ -169,8 +169,8 @@ TEST(Effects, OcclusionIsTheSameBitsHoweverRowsAreCut) {
   }
 }
 
-// The effects of a part of the picture, with as much around it as they look at, equal that part of
-// the whole picture's effects.
+// The effects on a part of the picture, with the border that they read, equal that part of the
+// whole picture's effects.
 TEST(Effects, DomesAndSilhouettesOfAPartAreThatPart) {
   constexpr int kWidth = 150, kHeight = 90, kAround = 2;
   const Drawn d = drawn("gyroid?cells=24", kWidth, kHeight);
@@ -189,7 +189,7 @@ TEST(Effects, DomesAndSilhouettesOfAPartAreThatPart) {
     Image<float> of_part(w, h), lines_of_part(w, h);
     effects.eye_dome(surface, d.camera, {.radius_px = kAround}, of_part);
     effects.silhouettes(surface, d.camera, {.width_px = 1}, lines_of_part);
-    // Where the part ends inside of the picture, what lies around is missing.
+    // A border is missing only at the picture's edge.
     const int left = x0 > 0 ? kAround : 0, top = y0 > 0 ? kAround : 0,
               right = x0 + w < kWidth ? kAround : 0, bottom = y0 + h < kHeight ? kAround : 0;
     for (int y = top; y < h - bottom; ++y)
@@ -230,7 +230,7 @@ TEST(AmbientOcclusion, LeavesPlanesAndDarkensCorners) {
   EXPECT_NEAR(dark(80, 60), 0.25, 0.1);
   EXPECT_EQ(dark(10, 60), 1);
   for (int x = 80; x < 110; ++x) EXPECT_LE(dark(x, 60), dark(x + 1, 60) + 0.02F) << x;
-  // The same edge seen from the other side takes nothing.
+  // The same edge from outside has no occlusion.
   const auto half = static_cast<float>(std::numbers::sqrt2 / 2);
   const Drawn ridge = made(kWide, kHigh, [&](double u, double) {
     return std::pair{3 / (1 - std::fabs(u)), u < 0 ? Vec3{-half, 0, half} : Vec3{half, 0, half}};
@@ -248,7 +248,7 @@ TEST(AmbientOcclusion, FindsNormalsFromDepth) {
   for (int y = 0; y < 120; ++y)
     for (int x = 0; x < 160; ++x)
       ASSERT_NEAR(given(x, y), found(x, y), x < 74 || x > 85 ? 0.01 : 0.15) << x << ", " << y;
-  // The normals themselves, through a camera that stands anywhere: a frame's own of flat faces.
+  // The normals themselves, with an arbitrary camera: those of a frame with flat faces.
   for (const bool orthographic : {false, true}) {
     const Drawn boxes = drawn("boxes?count=2", 200, 150, orthographic);
     const Surface depth_alone{.view_depth = boxes.depth.view()};
@@ -261,7 +261,7 @@ TEST(AmbientOcclusion, FindsNormalsFromDepth) {
         ++all;
         near += dot(overlay::normal_from_depth(frame, x, y), boxes.normals(x, y)) > 0.99F;
       }
-    // All but at creases, where the nearer neighbour may lie on another face.
+    // Except at creases, where the nearer neighbour may be on another face.
     EXPECT_GT(all, 3000);
     EXPECT_GT(near, all * 94 / 100) << orthographic;
   }
@@ -294,7 +294,7 @@ TEST(EyeDome, IsItsFormula) {
           const double q = d.depth(x + dx, y + dy), p = d.depth(x, y);
           if (q < p) sum += std::log(p / q);
         }
-      // (1 − t/16)¹⁶ lies below exp(−t) by at most 0.02.
+      // (1 − t/16)¹⁶ is below exp(−t) by at most 0.02.
       const double wanted = std::exp(-100 * 0.7 / 8 * sum);
       ASSERT_NEAR(factor(x, y), wanted, 0.02) << x << ", " << y;
       dark += wanted < 0.5;
@@ -303,7 +303,7 @@ TEST(EyeDome, IsItsFormula) {
 }
 
 TEST(Silhouettes, AreWhereSurfacesEndAndBend) {
-  // A square before a slanted plane before nothing.
+  // A square in front of a slanted plane in front of an empty background.
   Drawn d = made(40, 40, [&](double u, double v) {
     if (std::fabs(u) < 0.2 && std::fabs(v) < 0.2) return std::pair{2.0, Vec3{0, 0, 1}};
     if (std::fabs(u) < 0.4 && std::fabs(v) < 0.4)
@@ -323,7 +323,7 @@ TEST(Silhouettes, AreWhereSurfacesEndAndBend) {
         return 0.0F;
     return 1.0F;
   }));
-  // Normals and ids alone.
+  // Only normals and ids.
   for (float& depth : d.depth.pixels()) depth = 3;
   for (int y = 0; y < 40; ++y)
     for (int x = 0; x < 40; ++x) {
@@ -354,8 +354,8 @@ TEST(Effects, DarkenMixesTowardsInkAndKeepsAlpha) {
   EXPECT_EQ(color(1, 0).x, 0.4F);
 }
 
-// A surface in some tiles alone, twice with one object, so that what the first left in its scratch
-// would show.
+// Only some tiles have a surface. One object is used twice, so that leftovers in its scratch would
+// show.
 TEST(Effects, OccludeIsOcclusionAndDarkenAtOnce) {
   constexpr int kWidth = 700, kHeight = 200;
   const auto painted = [] {
@@ -400,7 +400,7 @@ TEST(Effects, DarkenIsTheSameOnEveryInstructionSet) {
     for (int x = 0; x < kWidth; ++x) {
       const auto byte = [&] { return static_cast<std::uint8_t>(random()); };
       before(x, y) = {byte(), byte(), byte(), byte()};
-      // Whole rows and single pixels that stay as they are, and halves that are ties.
+      // Whole rows and single pixels that do not change, and halves that are ties.
       factor(x, y) = y % 4 == 0 || random() % 3 == 0 ? 1.0F
                      : random() % 2 == 0             ? 0.5F
                                                      : static_cast<float>(random() % 1025) / 1024;
@@ -421,7 +421,7 @@ TEST(Effects, DarkenIsTheSameOnEveryInstructionSet) {
     }
 }
 
-// A leaf on the left half of a quad that blends: effects see the leaf, and beside it nothing.
+// A leaf on the left half of a blended quad: effects see the leaf, and nothing beside it.
 TEST(Effects, LookAtTexturesThatBlendWhereTheyAreSolid) {
   Scene scene;
   Mesh& mesh = scene.meshes.emplace_back();
@@ -467,7 +467,7 @@ TEST(Effects, RefuseWhatIsOutOfRange) {
                                             {.radius = 1, .samples = 0}};
   for (const AmbientOcclusion& options : bad_occlusion)
     EXPECT_THROW(occlusion(effects, d, options), Error) << options.radius;
-  // With an accepted radius all factors lie in [0, 1].
+  // With a valid radius all factors are in [0, 1].
   for (const double radius : {1e-29, 1e37}) {
     const Image<float> factors = occlusion(effects, d, {.radius = radius, .strength = 16});
     for (const float f : factors.pixels()) ASSERT_TRUE(f >= 0 && f <= 1) << radius;

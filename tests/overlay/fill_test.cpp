@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fills: coverage against the exact area of simple polygons and against brute force where polygons
-// overlap; what lies outside of the picture; blending.
+// Fills: coverage against the exact area of simple polygons, and against brute force if polygons
+// overlap; shapes outside of the picture; blending.
 #include <cmath>
 #include <random>
 #include <vector>
@@ -75,7 +75,7 @@ overlay::Path path_of(const std::vector<std::vector<P>>& polygons) {
   return path;
 }
 
-/// Points on the grid that paths round to, so that rounding is no part of a difference.
+/// Points on the grid of paths, so that rounding causes no difference.
 P random_point(std::mt19937& random, int low, int high) {
   std::uniform_int_distribution<int> at(low * 256, high * 256);
   const double x = at(random) / 256.0;
@@ -108,7 +108,7 @@ TEST(Fill, RectanglesAreExact) {
 }
 
 TEST(Fill, WhatOverlapsCountsOnceAndHolesStay) {
-  // A frame whose hole winds the other way, and a bar twice over both.
+  // A frame with a hole of opposite winding, and a bar twice over both.
   const std::vector<std::vector<P>> polygons{{{1, 1}, {19, 2}, {18, 17}, {2, 18}},
                                              {{5, 5}, {6, 14}, {14, 13}, {15, 6}},
                                              {{0, 8}, {20, 10}, {20, 12.5}, {0, 9}},
@@ -152,7 +152,7 @@ TEST(Fill, BlendsStraightAndPremultiplied) {
   overlay::Path path;
   path.add_rectangle(0, 0, 2, 1);
   overlay::fill({color8.view(), color.view()}, path, {0, 0, 255, 51});
-  // Over nothing the colour stays as it is, straight.
+  // Over nothing the colour stays as it is, not premultiplied.
   EXPECT_EQ(color8(0, 0), (Rgba8{0, 0, 255, 51}));
   EXPECT_EQ(color8(1, 0), (Rgba8{160, 80, 51, 255}));
   EXPECT_NEAR(color(0, 0).z, 0.2, 1e-6);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Words: that glyphs are the font's outlines, where they lie, what is missing, and golden digests.
+// Text: glyphs equal the font's outlines, their places, missing glyphs, and golden digests.
 #include <string>
 #include <vector>
 
@@ -39,13 +39,13 @@ Image<Rgba8> drawn(const std::string& text, double x, double y, const TextStyle&
   return picture;
 }
 
-/// Curves as the font has them: an O at 2048 px an em, whose units are then pixels, by brute force.
+/// The font's curves: a glyph at 2048 px per em, so that units are pixels, by brute force.
 TEST(Text, CoversWhatTheOutlineEncloses) {
   const overlay::Path large = overlay::text_path(0, 0, "g", {.size_px = 2048});
   const overlay::Path small = overlay::text_path(0, 20, "g", {.size_px = 32});
   Image<std::uint8_t> coverage(24, 32);
   overlay::fill(coverage.view(), small);
-  // 64 units a pixel: the large outline, sampled at each 4th, 16 samples across and down.
+  // 64 units per pixel: samples the large outline at every 4th unit, 16 across and down.
   const auto inside = [&](double x, double y) {
     int around = 0;
     for (std::size_t p = 0; p < large.begins().size(); ++p) {
@@ -89,7 +89,7 @@ TEST(Text, LiesWhereItIsAligned) {
       const double bottom = y == AlignY::top      ? 100 + height
                             : y == AlignY::middle ? 100 + height / 2
                                                   : 100;
-      EXPECT_NEAR(box.left, left + 3, 2);  // an H has air at its sides
+      EXPECT_NEAR(box.left, left + 3, 2);  // an H has space at its sides
       EXPECT_NEAR(box.right, left + width - 3, 2);
       EXPECT_NEAR(box.bottom, bottom - 0.5, 1);
       EXPECT_NEAR(box.top, bottom - height, 1);
@@ -107,13 +107,13 @@ TEST(Text, LinesAreAligned) {
 }
 
 TEST(Text, QuartersTurnTheSamePixels) {
-  // A place on a pixel's corner, so that turning moves pixels to pixels.
+  // At a pixel's corner, so that a quarter turn maps pixels to pixels.
   const auto upright = drawn("Rag", 100, 100, {.size_px = 24}),
              turned = drawn("Rag", 100, 100, {.size_px = 24, .quarter_turns = 1}),
              around = drawn("Rag", 100, 100, {.size_px = 24, .quarter_turns = 2});
   for (int y = 60; y < 140; ++y)
     for (int x = 60; x < 140; ++x) {
-      // Lines run down as well as across: coverage differs in its last digits.
+      // Lines run both down and across, so coverage differs in the last digits.
       ASSERT_NEAR(upright(x, y).a, turned(y, 199 - x).a, 3) << x << ", " << y;
       ASSERT_NEAR(upright(x, y).a, around(199 - x, 199 - y).a, 3) << x << ", " << y;
     }
@@ -126,7 +126,7 @@ TEST(Text, HalosAreAroundLetters) {
   EXPECT_NEAR(inner.left - outer.left, 3, 1);
   EXPECT_NEAR(outer.right - inner.right, 3, 1);
   EXPECT_NEAR(outer.bottom - inner.bottom, 3, 1);
-  // Half as transparent, it is so once, however many strokes overlap.
+  // A half-transparent halo applies once, however many strokes overlap.
   const auto half = drawn("i", 100, 100, {.size_px = 40, .halo_px = 3, .halo = {0, 0, 0, 128}});
   for (const Rgba8 pixel : half.pixels())
     if (pixel.r == 0) {
@@ -139,14 +139,14 @@ TEST(Text, SaysWhatIsMissing) {
       overlay::missing_glyphs("Speed |v| in m·s⁻¹, 20 °C ± 3 µm, Å, ∞ ≤ ≥ − × ² ³ Ωλ").empty());
   EXPECT_EQ(overlay::missing_glyphs("a漢b漢\n字"), (std::vector<char32_t>{U'漢', U'字'}));
   EXPECT_EQ(overlay::missing_glyphs("\xff"), (std::vector<char32_t>{0xFFFD}));
-  // The box is drawn, so a hole in the font is seen.
+  // A missing glyph shows as a box.
   EXPECT_GT(drawn_box(drawn("漢", 50, 50, {.size_px = 20})).right, 0);
 }
 
 TEST(Text, DecodesUtf8) {
   using overlay::decode_utf8;
   EXPECT_EQ(decode_utf8("aµ€\xF0\x9F\x98\x80"), (std::vector<char32_t>{U'a', U'µ', U'€', 0x1F600}));
-  // Overlong, surrogate, beyond the last code point, cut off: each byte is none.
+  // Overlong, surrogate, beyond the last code point, truncated: each byte is invalid.
   EXPECT_EQ(decode_utf8("\xC0\xAF"), (std::vector<char32_t>{0xFFFD, 0xFFFD}));
   EXPECT_EQ(decode_utf8("\xED\xA0\x80"), (std::vector<char32_t>{0xFFFD, 0xFFFD, 0xFFFD}));
   EXPECT_EQ(decode_utf8("\xF4\x90\x80\x80").size(), 4U);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Paper 2's rasterizer: its masks against their definition, both schedules against the reference,
-// its counters and the load of its simulated workers against counts made here.
+// and its counters and the load of its simulated workers against counts made here.
 #include <papers/paper2/binned.hpp>
 
 #include <algorithm>
@@ -81,7 +81,7 @@ Scene sized_triangles(int count, double least, double most, int width, int heigh
   return single(std::move(mesh));
 }
 
-// The counters that are expected, from the pieces, by the oracle.
+// Expected counters, computed from the pieces by the oracle.
 
 struct Expected {
   std::uint64_t pieces = 0, small = 0, large = 0, bins = 0, tile_pairs = 0, blocks = 0;
@@ -130,7 +130,7 @@ void expect_counters(const FrameStats& stats, const Expected& e) {
   EXPECT_EQ(counter(stats, "work of 64 workers"), e.tile_pairs + e.blocks);
 }
 
-/// By both schedules with each number of threads: the picture and the work that are expected.
+/// Expects this picture and work from both schedules with each number of threads.
 void expect_by_both(const Scene& scene, const Camera& camera, const Frame& expected,
                     const Expected& work, std::initializer_list<int> thread_counts,
                     std::uint64_t most_bytes = ~std::uint64_t{0}) {
@@ -146,7 +146,7 @@ void expect_by_both(const Scene& scene, const Camera& camera, const Frame& expec
     }
 }
 
-// The mask of a bin is its definition: a tile is in it if a sample of it is covered.
+// A bin's mask has a tile if and only if a sample of the tile is covered.
 
 raster::ProjectedVertex vertex(int x_fx8, int y_fx8) {
   raster::ProjectedVertex v;
@@ -156,7 +156,7 @@ raster::ProjectedVertex vertex(int x_fx8, int y_fx8) {
   return v;
 }
 
-/// The tiles of a bin that cover_tiles finds, each once, ascending.
+/// The tiles that cover_tiles finds; expects each once, ascending.
 std::vector<bool> covered_tiles(family::BinSizes sizes, const raster::Piece& piece,
                                 raster::Rect bin) {
   std::vector<bool> tiles(static_cast<std::size_t>(sizes.tiles_per_bin()));
@@ -174,7 +174,7 @@ void expect_exact_masks(family::BinSizes sizes, std::uint64_t seed, int count) {
   Random random(seed);
   std::uint64_t covered = 0, empty = 0;
   for (int i = 0; i < count; ++i) {
-    // A bin anywhere, whole or cut by the view, and corners near it, far from it, in a line.
+    // A bin anywhere, whole or cut by the view, and corners near it, far from it, or in a line.
     raster::Rect bin;
     bin.x0 = random.integer(0, 20) * bin_px;
     bin.y0 = random.integer(0, 20) * bin_px;
@@ -324,7 +324,7 @@ TEST(Binned, EnumeratesEachCoveredSampleOnceAndCountsItsWork) {
     }
     if (HasFailure()) return;
   }
-  // The kinds that the paper and its reference code lose are among them.
+  // These include the kinds that the paper's reference code loses.
   for (const char* kind : {"near_crossing", "huge", "extreme"})
     EXPECT_GT(seen[kind].large, 0U) << kind;
 }
@@ -332,7 +332,7 @@ TEST(Binned, EnumeratesEachCoveredSampleOnceAndCountsItsWork) {
 TEST(Binned, DrawsWhatCrossesTheNearPlaneAndTheGuardBand) {
   constexpr int kWidth = 640, kHeight = 480;
   const Camera camera{.eye = {0, 0, 0}, .target = {0, 0, -1}, .near_plane = 0.1F};
-  // A floor and a wall that begin behind the eye, and one triangle beyond the guard band.
+  // A floor and a wall that begin behind the eye, and a triangle beyond the guard band.
   Mesh mesh;
   mesh.positions = {{-50, -1, 20},      {50, -1, 20},      {0, -1, -200},
                     {2, -40, 3},        {2, 40, 3},        {2, 0, -90},
@@ -350,7 +350,7 @@ TEST(Binned, DrawsWhatCrossesTheNearPlaneAndTheGuardBand) {
 
 TEST(Binned, QueuesGrow) {
   constexpr int kSize = 512;
-  // Slivers whose boxes touch four bins and more; together far beyond what a round holds.
+  // Slivers whose boxes touch at least four bins; together they far exceed a round.
   const int count = share_of(100000);
   Random random(3);
   Mesh mesh;
@@ -366,8 +366,8 @@ TEST(Binned, QueuesGrow) {
   const Expected work = expected_of(pieces_of(binding.view(), camera, kSize, kSize), kSize, kSize);
   EXPECT_EQ(work.large, static_cast<std::uint64_t>(count));
   EXPECT_GE(work.bins, 4U * static_cast<std::uint64_t>(count));
-  // Entries take at most 48 bytes, and not all are held at once: what else there is are the pieces
-  // (twice), the vertices and the keys.
+  // Entries take at most 48 bytes and do not exist all at once. The rest are pieces (twice),
+  // vertices and keys.
   expect_by_both(scene, camera, expected, work, {1, 8},
                  static_cast<std::uint64_t>(count) * (2 * 48 + 3 * 16) * 3 / 2 + kSize * kSize * 8 +
                      (std::uint64_t{12} << 20));
@@ -400,7 +400,7 @@ TEST(Binned, DrawsInRoundsWhereMemoryIsShort) {
   }
 }
 
-// Must show 4: how evenly 64 workers would share the tiles.
+// How evenly 64 workers would share the tiles.
 
 TEST(Binned, TwoStagesLoadAllWorkersAlike) {
   if (test_share() < 100) GTEST_SKIP() << kOnlyWhole;
@@ -443,8 +443,8 @@ TEST(Binned, TwoStagesLoadAllWorkersAlike) {
     }
 }
 
-// A visibility that wants to see everything again, in parts: whatever the threads do meanwhile,
-// each chunk has the same blocks in the same order.
+// A visibility that needs several passes over parts: each chunk must have the same blocks in the
+// same order, whatever the threads do.
 
 using Seen = std::vector<std::tuple<std::uint32_t, int, int, std::uint64_t>>;
 
@@ -494,7 +494,7 @@ TEST(Binned, EveryPassSeesTheSameChunks) {
   Scene scene = sized_triangles(300, 4000, 40000, kSize, kSize, 5);
   const Scene small = sized_triangles(700, 4, 300, kSize, kSize, 6);
   Mesh& mesh = scene.meshes.front();
-  // Large and small ones take turns in the batches.
+  // Large and small ones alternate in the batches.
   std::vector<Vec3> mixed;
   for (std::size_t i = 0; i < 1000; ++i) {
     const auto& from = i % 10 < 3 ? mesh.positions : small.meshes.front().positions;
@@ -517,7 +517,7 @@ TEST(Binned, EveryPassSeesTheSameChunks) {
         raster::FrameRequest request;
         request.width = request.height = kSize;
         request.draws = {&draw, 1};
-        for (int frame = 0; frame < 2; ++frame) {  // the second finds the first one's scratch
+        for (int frame = 0; frame < 2; ++frame) {  // the second reuses scratch
           Again::blocks_seen = 0;
           const FrameStats stats = rasterizer.draw(request, rasterizer.plan(request));
           EXPECT_GT(counter(stats, "large"), 0U);
@@ -527,7 +527,7 @@ TEST(Binned, EveryPassSeesTheSameChunks) {
       }
 }
 
-// Here and not through the facade, which refuses it before a frame is asked for.
+// Tested here, because the façade refuses it earlier.
 TEST(FrameDriver, RefusesInstructionSetsThatAreNotThere) {
   MemoryAccount memory;
   parallel::Threads exec(1, &memory);

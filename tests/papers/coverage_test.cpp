@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The coverages of paper 1: each enumerates every covered sample once, in every tuning and order,
-// with any number of threads and under a memory limit, and each does the work that its name says:
-// its counters are held against counts made here from the pieces alone.
+// The coverages of paper 1 enumerate every covered sample once, in every tuning and order, with any
+// number of threads and under a memory limit. Each does the work of its name: its counters equal
+// counts made here from the pieces alone.
 #include <algorithm>
 #include <cstdint>
 #include <map>
@@ -29,7 +29,7 @@ namespace {
 
 using family::BlockOrder, family::SmallPath;
 
-/// Paper 1's, a bin of four tiles, and the largest tile; 0: 32/8.
+/// Paper 1's sizes, a bin of four tiles, and the largest tile; 0: 32/8.
 constexpr std::pair<int, int> kTileSizes[] = {{0, 0},   {16, 4},  {32, 4}, {64, 4},  {64, 8},
                                               {64, 16}, {128, 8}, {8, 4},  {128, 64}};
 constexpr std::pair<int, int> kImageSizes[] = {{64, 64}, {37, 53}, {200, 130}, {1, 1}, {131, 20}};
@@ -63,8 +63,7 @@ TEST_P(EverySample, IsEnumeratedOnce) {
     Painter reference(reference_options(width, height));
     for (const auto& [bin_px, tile_px] : kTileSizes) {
       if (!row.has_tiles && bin_px != 0) continue;
-      // The other choices take turns: 3, 4, 2 and 2 of them, and the scene, have periods of 3, 4,
-      // 8 and 16.
+      // The other choices cycle: 3, 4, 2 and 2 values and the scene have periods of 3, 4, 8 and 16.
       for (int i = 0; i < (row.has_tiles ? 16 : 48); ++i, ++n) {
         if (test_share() < 100 && n % 5 != 0) continue;
         const RenderOptions o = row_options(width, height, row.name, kThreads[n % 3],
@@ -98,7 +97,7 @@ Scene triangles(int count, int width, int height, std::uint64_t seed) {
   return single(std::move(mesh));
 }
 
-// Bands, batches of triangles and turns of what they expand to: each limit cuts differently.
+// Bands, batches of triangles and turns of an expansion: each limit cuts differently.
 TEST_P(EverySample, IsEnumeratedOnceUnderALimit) {
   constexpr int kWidth = 700, kHeight = 500;
   const Scene scene = triangles(share_of(20000, 4000), kWidth, kHeight, 7);
@@ -121,7 +120,7 @@ TEST_P(EverySample, IsEnumeratedOnceUnderALimit) {
 INSTANTIATE_TEST_SUITE_P(Coverages, EverySample, testing::ValuesIn(kRows),
                          [](const auto& p) { return p.param.name; });
 
-/// Whether the sample lies on the triangle's side of the line through edge i, which owns it or not.
+/// Whether the sample is on the inner side of edge i or on the edge, if the triangle owns it.
 bool inside_edge(const SnappedTriangle& t, int i, int px, int py) {
   SnappedVertex a = t.v[i], b = t.v[(i + 1) % 3];
   if (twice_area(t) < 0) std::swap(a, b);
@@ -163,7 +162,7 @@ void count_tiles(const SnappedTriangle& t, const PixelBox& box, int bin_px, int 
       }));
 }
 
-/// The counts that the listing of that name makes with these pieces.
+/// The counts that the listing of that name must make with these pieces.
 Counts expected_counts(const std::string& name, const PieceList& pieces, const RenderOptions& o) {
   Counts counts;
   const int bin_px = o.tuning.bin_px == 0 ? 32 : o.tuning.bin_px;
@@ -294,7 +293,7 @@ TEST(Tiled, ScratchStaysBelowThePapersForABunny) {
 }
 
 TEST(Tiled, ScratchGrowsWithTrianglesAndNotWithPixels) {
-  // The same triangles of the same size in pixels, in 16 times as many pixels.
+  // The same triangles at the same size in pixels, in 16 times as many pixels.
   const std::uint64_t small = tiled_bytes("sphere?rings=51&segments=50", 1024, 1);
   const std::uint64_t large = tiled_bytes("sphere?rings=51&segments=50", 4096, 4);
   EXPECT_LT(large, small + small / 4) << small;

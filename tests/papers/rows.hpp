@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tests of rows share the options of the pictures that rows are compared with and of the rows
-// themselves, and how far a triangle reaches.
+// Shared by tests of rows: options of the reference pictures and of the rows, and the reach of a
+// triangle.
 #pragma once
 
 #include <algorithm>
@@ -13,12 +13,12 @@
 
 namespace rastrum::test {
 
-/// One thread, plain C++, triangles told apart by colour.
+/// One thread, plain C++, a colour per triangle.
 [[nodiscard]] inline RenderOptions reference_options(int width, int height) {
   return RenderOptions({.width = width, .height = height, .shader = Shader::id},
                        {.device = Device::serial});
 }
-/// The same by a row.
+/// The same options with a row.
 [[nodiscard]] inline RenderOptions row_options(int width, int height, const std::string& rasterizer,
                                                int threads, const family::Tuning& tuning = {}) {
   return RenderOptions({.width = width, .height = height, .shader = Shader::id},
@@ -32,7 +32,7 @@ struct PixelBox {
   [[nodiscard]] bool empty() const { return x0 >= x1 || y0 >= y1; }
   [[nodiscard]] int area() const { return empty() ? 0 : (x1 - x0) * (y1 - y0); }
 };
-/// The pixels whose samples lie between the outermost vertices, found by asking each of them.
+/// The pixels whose samples are between the outermost vertices, by testing each.
 [[nodiscard]] inline PixelBox box_of(const SnappedTriangle& t, int width, int height) {
   const auto range = [](std::int64_t a, std::int64_t b, std::int64_t c, int size) {
     const auto [low, high] = std::minmax({a, b, c});
@@ -49,7 +49,7 @@ struct PixelBox {
   return {x0, y0, x1, y1};
 }
 
-/// Surfaces and counters.
+/// Compares surfaces and counters.
 [[nodiscard]] inline testing::AssertionResult same_frame(const Frame& a, const Frame& b) {
   if (auto r = same_surfaces(a, b); !r) return r;
   return same_counts(a.stats, b.stats);

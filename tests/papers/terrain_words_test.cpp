@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The operators of paper 3's scans. That `words` draws what the other methods draw is
-// terrain/methods_test.cpp's and, of a device, terrain/cuda_renderer_test.cpp's.
+// The operators of paper 3's scans. terrain/methods_test.cpp and, for a device,
+// terrain/cuda_renderer_test.cpp compare the pictures of `words` with the other methods'.
 #include <cstdint>
 #include <random>
 
@@ -32,7 +32,7 @@ TEST(TerrainScans, AreAssociative) {
     EXPECT_EQ(occlude(kNoPair, a).row, a.row);
     EXPECT_EQ(occlude(a, b), b.row < a.row ? b : a) << "of one row the nearer is seen";
     const Pixel p = pixel(), q = pixel(), r = pixel();
-    // Empty pixels are all alike, whatever colour is left in them.
+    // All empty pixels are equal, whatever colour they hold.
     const Pixel left = fill(fill(p, q), r), right = fill(p, fill(q, r));
     EXPECT_TRUE(left == right || (left.depth == 0 && right.depth == 0));
     EXPECT_EQ(fill(Pixel{}, q).depth, q.depth);

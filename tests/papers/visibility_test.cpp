@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every method of visibility against a plain maximum at each pixel, on generated blocks: one thread
-// that owns the region and many that share it, few and many layers, equal depths, depth 0, begun on
-// a surface that holds keys already, and some of them as finished fragments. And each method's
-// counters, exactly.
+// Every visibility method against a plain maximum at each pixel, on generated blocks: one thread
+// that owns the region, many that share it, few and many layers, equal depths, depth 0, on a
+// surface that already holds keys, and some fragments with finished keys. Also each method's exact
+// counters.
 #include <algorithm>
 #include <bit>
 #include <map>
@@ -27,13 +27,13 @@ using namespace rastrum::family;
 constexpr int kWidth = 100, kHeight = 75;
 constexpr Rect kImage{0, 0, kWidth, kHeight};
 
-/// A colour that tells pixels and ids from each other.
+/// A colour that depends on pixel and id.
 class ByKey final : public BlockShader {
  public:
   bool shade(const FrameGeometry&, const VisibleBlock& block, Isa,
              BlockColors& colors) const noexcept override {
-    // Scratch that is kept from block to block must be zero at first in each case, and belong to
-    // one thread.
+    // Scratch that is kept between blocks must begin with zeros in each case and belong to one
+    // thread.
     auto* const kept = static_cast<std::uint64_t*>(block.scratch);
     if (kept[0] != kept[1] || (kept[2] != 0 && kept[2] != case_number)) std::abort();
     ++kept[0];
@@ -98,7 +98,7 @@ Case generate(std::uint64_t seed, int layers, std::size_t chunk_count) {
       p.x[k] = random.integer(0, kWidth * 256);
       p.y[k] = random.integer(0, kHeight * 256);
     }
-    // A third have one depth, so that ids decide; some of those have depth 0.
+    // A third have the same depth, so that ids decide; some of these have depth 0.
     p.z0 = i % 3 == 0 ? (i % 2 == 0 ? 0.5F : 0.0F) : static_cast<float>(random.real(0.1, 1));
     if (i % 3 == 1) {
       p.zx = static_cast<float>(random.real(-0.01, 0.01));
@@ -147,7 +147,7 @@ struct Resolved {
   std::map<std::string, std::uint64_t> counters;
 };
 
-/// Resolves cases with one method: what it keeps from case to case is part of the test.
+/// Resolves cases with one method. Its state between cases is part of the test.
 class Resolver {
  public:
   Resolver(const Visibility& method, Isa isa, int threads)
@@ -173,8 +173,8 @@ class Resolver {
     return read(surface, *shared_);
   }
 
-  /// Bins one after the other; every second one has its keys in memory of its own. Where the
-  /// method takes finished fragments every third block is handed over as such.
+  /// Bins one after the other; every second one has keys of its own. If the method takes finished
+  /// fragments, every third block is handed over so.
   Resolved owned(const Case& c, std::uint64_t fragment_bytes) {
     const SurfaceView surface = whole(c);
     for (int y = 0; y < kHeight; y += kBinSize)
@@ -284,7 +284,7 @@ class Resolver {
   FrameGeometry frame_;
   ByKey shader_;
   std::vector<Vec4> color_ = std::vector<Vec4>(std::size_t{kWidth} * kHeight);
-  // Kernels load keys aligned.
+  // Kernels need aligned keys.
   std::vector<std::uint64_t, parallel::ArenaAllocator<std::uint64_t>> keys_{
       parallel::ArenaAllocator<std::uint64_t>(std::make_shared<parallel::Arena>())};
   std::vector<BlockColors> colors_;
@@ -311,7 +311,7 @@ class Methods : public testing::TestWithParam<std::string> {
     for (int y = 0; y < kHeight; ++y)
       for (int x = 0; x < kWidth; ++x) {
         const auto i = static_cast<std::size_t>(y * kWidth + x);
-        // Keys that were there before have no colour here.
+        // Keys from before have no colour here.
         const Vec4 expected = r.keys[i] == c.before[i] ? Vec4{} : ByKey::color(r.keys[i], x, y);
         ASSERT_EQ(r.colors[i], expected);
       }
@@ -336,7 +336,7 @@ TEST_P(Methods, KeepTheMaximumOfEachPixel) {
     }
 }
 
-// As few fragments as can be: tables and sorts have least sizes of their own.
+// Very few fragments: tables and sorts have minimum sizes.
 TEST_P(Methods, KeepTheMaximumOfAFewFragments) {
   Resolver resolver(method_, available_isas().back(), 2);
   for (std::uint64_t seed = 1000; seed < 1200; ++seed) {
@@ -349,7 +349,7 @@ TEST_P(Methods, KeepTheMaximumOfAFewFragments) {
   }
 }
 
-// However little memory fragments may take.
+// With very little memory for fragments.
 TEST_P(Methods, KeepTheMaximumWithinABudget) {
   Resolver resolver(method_, available_isas().back(), 8);
   std::uint64_t seed = 100;
@@ -408,7 +408,7 @@ TEST_P(Counted, TupleShadesEveryFragment) {
 }
 
 TEST_P(Counted, SortedWritesEveryFragmentOnce) {
-  // A band is a block where the image is as small as here; a slice holds 32,768.
+  // In an image this small a band is a block; a slice holds 32,768.
   std::set<std::pair<int, int>> blocks;
   std::map<std::pair<int, int>, std::uint64_t> bins;
   case_.for_each_fragment([&](const Fragment& f) {
@@ -438,7 +438,8 @@ TEST_P(Counted, HashedHasASlotForEveryPixelItMeets) {
     EXPECT_LE(counters.at("probes"), pixels.size() * 4);
     EXPECT_GE(counters.at("table slots"), pixels.size());
   }
-  // Counted before: no more than the load factor of 0.7 asks for, up to a few blocks.
+  // Counted before, so there are at most as many slots as the load factor 0.7 needs, up to a few
+  // blocks.
   const auto bound = std::min<std::uint64_t>(case_.fragments, block_count(kImage) * 64);
   const auto slots = resolve("hashed", Sharing::shared).counters.at("table slots");
   EXPECT_GE(slots * 7, bound * 10);

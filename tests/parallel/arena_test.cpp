@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The words' memory: reused, bounded by what was out at one time, accounted.
+// The words' memory is reused, bounded by its peak use, and accounted.
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -52,7 +52,7 @@ TEST(Arena, KeepsWhatComesBackAndNoMoreThanWasOut) {
   EXPECT_EQ(arena.allocate(kMiB), a);
   arena.release(a, kMiB);
 
-  // Blocks of all sizes, one at a time: the old ones have to go.
+  // Blocks of growing size, one at a time: old ones must be freed.
   for (std::size_t bytes = kMiB; bytes <= 40 * kMiB; bytes = bytes / 4 * 5) {
     arena.release(arena.allocate(bytes), bytes);
     ASSERT_LE(arena.held(), arena.peak());
@@ -72,7 +72,7 @@ TEST(Arena, SaysWhatWasAskedForWhenThereIsNone) {
   EXPECT_EQ(arena.in_use(), 0U);
 }
 
-/// A source that has `left` blocks to give, then none, or a fault that is not for lack of memory.
+/// A source of memory with `left` blocks, or one that fails for another reason.
 int left = 0;
 bool faults = false;
 MemorySource source_that_ends() {
@@ -101,7 +101,7 @@ TEST(Arena, TellsLackOfMemoryFromAFaultOfItsSource) {
                                     });
       ASSERT_EQ(blocks.size(), static_cast<std::size_t>(n));
       EXPECT_EQ(arena.in_use(), blocks.size() * kMiB);
-      // With a block that is kept and too small the source is asked again; as good as before.
+      // With a kept block that is too small, the source is asked again; nothing is lost.
       for (void* const block : blocks) arena.release(block, kMiB);
       EXPECT_THROW(static_cast<void>(arena.allocate(2 * kMiB)), Error);
       left = 1;
@@ -111,7 +111,7 @@ TEST(Arena, TellsLackOfMemoryFromAFaultOfItsSource) {
     }
 }
 
-// A camera that moves changes the sizes of a frame's lists; asking a device for memory stops it.
+// A moving camera changes the sizes of a frame's lists, and allocation on a device stalls it.
 TEST(Arena, SizesThatDriftTakeBlocksThatAreThere) {
   const auto frames = static_cast<std::size_t>(rastrum::test::share_of(300, 60));
   constexpr std::size_t kLists = 6;
@@ -165,7 +165,7 @@ TEST(Arena, BuffersOutliveTheirBackend) {
 TEST(Arena, FramesAfterTheFirstTakeNothingNew) {
   if (!kKeeps) GTEST_SKIP() << "the address sanitizer is to see what is used after its release";
   MemoryAccount account;
-  Threads exec(1, &account);  // with more, those who take part in a frame may differ
+  Threads exec(1, &account);  // with more, the threads of a frame may vary
   std::uint64_t after_the_first = 0;
   for (int frame = 0; frame < 5; ++frame) {
     auto keys = random_values<std::uint32_t>(300007, 1000);

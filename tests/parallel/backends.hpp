@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every word is held against its definition on every backend, with sizes around those at which the
-// implementations change their way. Compiled with RASTRUM_TEST_DEVICE_WORDS the backend is that of
+// Compares every word with its definition on every backend, at sizes around those where the
+// implementations switch methods. With RASTRUM_TEST_DEVICE_WORDS the backend is that of
 // rastrum/parallel/cuda, on the CPU (system.cuh).
 #pragma once
 
@@ -59,13 +59,13 @@ inline const std::vector<std::size_t> kSizes = {
     kBlock - 1, kBlock, kBlock + 1,
     3 * kBlock, 50021,  static_cast<std::size_t>(rastrum::test::share_of(300007, 70001))};
 
-/// A result of a word, to be compared with what a test expects.
+/// Makes a word's result comparable with an expected vector.
 template <class T>
 std::vector<T> as_vector(const Buffer<T>& buffer) {
   return {buffer.begin(), buffer.end()};
 }
 
-/// compute(backend), floats, has the bits of Serial on all of them.
+/// Expects that compute(backend), floats, has Serial's bits on all backends.
 template <class Compute>
 void expect_one_result(const Compute& compute) {
   Serial serial;
@@ -86,7 +86,7 @@ std::vector<T> random_values(std::size_t n, std::uint64_t limit, std::uint64_t s
   return values;
 }
 
-/// Segment sizes of several characters: the last ones are what simple load balancing breaks on.
+/// Segment sizes of several kinds; the last ones defeat simple load balancing.
 inline std::vector<std::vector<std::uint32_t>> segment_sizes() {
   std::vector<std::vector<std::uint32_t>> all = {{}, {0}, {1}, {0, 0, 0}, {100000}};
   for (const std::size_t n : {2U, 64U, 5000U}) all.push_back(random_values<std::uint32_t>(n, 40));

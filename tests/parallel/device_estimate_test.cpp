@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The estimates by which Device::automatic chooses, checked by hand.
+// Checks by hand the estimates that Device::automatic uses.
 #include <rastrum/parallel/device_estimate.hpp>
 
 #include <gtest/gtest.h>

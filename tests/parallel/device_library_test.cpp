@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Files that are no library of device code (parallel/cuda/library.hpp). tests/cuda/library_test.cpp
-// tests one that is.
+// Files that are not a library of device code (parallel/cuda/library.hpp).
+// tests/cuda/library_test.cpp tests a valid one.
 #include <gtest/gtest.h>
 
 #include <rastrum/parallel/cuda/library.hpp>

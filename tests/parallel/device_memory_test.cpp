@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Only the device's backend has these: memory that is pooled, and sums that wait until they are
-// read.
+// Features of the device's backend only: pooled memory, and sums whose reading is deferred.
 #include <algorithm>
 
 #include "tests/parallel/backends.hpp"
@@ -48,7 +47,7 @@ TEST(DeviceMemory, BuffersMoveAndOutliveTheirContext) {
   EXPECT_EQ(account.held(), 0U);
 }
 
-// Thrust's exception is no rastrum::Error, and nobody outside of the device's code knows it.
+// Thrust's exception is not a rastrum::Error, and only device code knows its type.
 TEST(DeviceErrors, OfThrustComeOutAsError) {
   rastrum::test::expect_refused("failed to synchronize", Errc::no_device, [&] {
     cuda_system::with_errors([]() -> int {
@@ -64,7 +63,7 @@ TEST(DeviceErrors, OfThrustComeOutAsError) {
   EXPECT_EQ(cuda_system::with_errors([] { return 7; }), 7);
 }
 
-// A context that was made for one device is used where another is current.
+// A context of one device is used while another device is current.
 TEST(DeviceContext, CallsItsOwnDevice) {
   struct Restored {
     ~Restored() { cuda_system::set_device(0); }

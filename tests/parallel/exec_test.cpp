@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The backends' loop: every index once, results visible to the caller afterwards, errors passed on.
+// The backends' loop: every index once, results visible afterwards, errors passed on.
 #include <atomic>
 #include <chrono>
 #include <cstddef>
@@ -40,8 +40,8 @@ TEST_P(ThreadCounts, EachIndexOnce) {
   for (const std::size_t n : {0U, 1U, 7U, 100000U}) expect_each_index_once(exec, n);
 }
 
-// Also where there are fewer cores: each waits in its body until all others are in theirs. Again
-// and again, for oneTBB remembers what it was told.
+// Even on fewer cores: each body waits until all others have begun. Repeated, because oneTBB caches
+// its limits.
 TEST_P(ThreadCounts, AreThatManyThreads) {
   for (int repeat = 0; repeat < 3; ++repeat) {
     Threads exec(GetParam());
@@ -57,8 +57,8 @@ TEST_P(ThreadCounts, AreThatManyThreads) {
   }
 }
 
-// One loop after the other over the same memory, written by other threads each time: what a frame's
-// stages do. Under the thread sanitizer it also holds that the loop is a barrier.
+// Loops over the same memory, which other threads write each time, as in a frame's stages. Under
+// the thread sanitizer this also tests that a loop is a barrier.
 TEST_P(ThreadCounts, LoopsFollowEachOther) {
   Threads exec(GetParam());
   constexpr std::size_t n = 10000;
@@ -97,7 +97,7 @@ TEST_P(ThreadCounts, AStoppedLoopLeavesOutWhatHasNotBegun) {
     const StopScope scope(token);
     expect_each_index_once(exec, n);
     EXPECT_THROW(for_each_index(exec, n, [&](std::size_t) { trigger.call(); }), Stopped);
-    // The others have at most begun one each.
+    // Each other thread may have begun one more.
     EXPECT_LE(trigger.after(), GetParam() - 1);
     EXPECT_THROW(for_each_index(exec, 1, [](std::size_t) {}), Stopped);
     {
@@ -110,7 +110,7 @@ TEST_P(ThreadCounts, AStoppedLoopLeavesOutWhatHasNotBegun) {
   expect_each_index_once(exec, n);
 }
 
-// Asked by a worker where there is one: the caller has the token in force anyway.
+// A worker, if there is one, requests the stop; the caller has the token anyway.
 TEST_P(ThreadCounts, BodiesAndTheirLoopsSeeTheStop) {
   Threads exec(GetParam());
   std::stop_source source;

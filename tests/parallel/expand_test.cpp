@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Expansions against their definitions as nested loops: the lists of expand and expand_masked, and
-// of expand_each and the walk of a masked expansion what is visited, in which chunk, in which
-// order, at the first walk and at the second.
+// Compares expansions with nested loops: the lists of expand and expand_masked; and for expand_each
+// and the walk of a masked expansion the visited results, their chunks and order, at the first and
+// the second walk.
 #include <array>
 #include <utility>
 
@@ -13,10 +13,10 @@ namespace {
 
 using rastrum::test::test_share;
 
-/// (segment, j), the results of an expansion in their order.
+/// The results of an expansion in order: (segment, j).
 using Results = std::vector<std::pair<std::size_t, std::size_t>>;
 
-/// All of them, or those that holds(segment, j).
+/// All results, or those that holds(segment, j) keeps.
 template <class Holds>
 Results results_of(const std::vector<std::uint32_t>& sizes, const Holds& holds) {
   Results all;
@@ -28,7 +28,7 @@ Results results_of(const std::vector<std::uint32_t>& sizes, const Holds& holds) 
 Results results_of(const std::vector<std::uint32_t>& sizes) {
   return results_of(sizes, [](std::size_t, std::size_t) { return true; });
 }
-/// How many of 8 elements hold, by a hash of segment and index: none, few, half, all.
+/// How many of 8 elements pass, by a hash of segment and index: none, few, half, all.
 constexpr std::size_t kDensities[] = {0, 1, 4, 8};
 auto holds_of(std::size_t density) {
   return [density](std::size_t i, std::size_t j) {
@@ -76,7 +76,7 @@ TEST(ExpandMasked, MatchesExpandThenFilter) {
 
 constexpr std::array<std::size_t, 4> kPerChunk = {1, 7, 64, kBlock};
 
-/// Definition: chunk c of `walk` holds the results from c · per_chunk on, in order.
+/// By definition chunk c of `walk` has the results from c · per_chunk on, in order.
 template <class Plan, class Walk>
 void expect_chunks(const Plan& plan, const Results& expected, Walk&& walk) {
   const std::size_t per_chunk = plan.per_chunk();
@@ -84,7 +84,7 @@ void expect_chunks(const Plan& plan, const Results& expected, Walk&& walk) {
   ASSERT_EQ(plan.chunks(), (expected.size() + per_chunk - 1) / per_chunk);
   for (int repeat = 0; repeat < 2; ++repeat) {
     Results seen(expected.size());
-    std::vector<std::size_t> visited(plan.chunks(), 0);  // race-free only with one thread a chunk
+    std::vector<std::size_t> visited(plan.chunks(), 0);  // race-free with one thread a chunk
     std::vector<std::uint8_t> too_many(plan.chunks(), 0);
     walk([&](std::size_t c, std::size_t i, std::size_t j) {
       const std::size_t k = plan.chunk_begin(c) + visited[c]++;
@@ -131,7 +131,7 @@ TEST(ExpandEach, RunsAreTheSegmentsSharesOfAChunk) {
           owners_of[chunk.index()].push_back(i);
         });
       });
-      // Joined where a chunk cut them, the runs are the segments that are not empty.
+      // After joining runs that a chunk cut, the runs are the non-empty segments.
       std::size_t segment = 0, reached = 0;
       for (std::size_t c = 0; c < plan.chunks(); ++c)
         for (std::size_t r = 0; r < runs[c].size(); ++r) {
@@ -152,7 +152,7 @@ TEST(ExpandEach, RunsAreTheSegmentsSharesOfAChunk) {
     });
 }
 
-/// f(chunk, segment, j) for each result.
+/// Calls f(chunk, segment, j) for each result.
 template <class Exec, class Plan, class In, class F>
 void walk(Exec& exec, const Plan& plan, const In& in, const F& f) {
   expand_chunks(exec, plan, in, [&](const auto& chunk) {
@@ -164,13 +164,13 @@ template <class Width>
 class MaskedExpansions : public testing::Test {};
 template <int kBits>
 using Bits = std::integral_constant<int, kBits>;
-/// Many masks a group, the default, and masks of several words; mask_test.cpp has all widths.
+/// Many masks per group, the default, and masks of several words. mask_test.cpp has all widths.
 using Widths = testing::Types<Bits<8>, Bits<64>, Bits<256>>;
 TYPED_TEST_SUITE(MaskedExpansions, Widths);
 
 TYPED_TEST(MaskedExpansions, VisitsEachResultInItsChunkInOrder) {
   constexpr int kBits = TypeParam::value;
-  // A smaller share is each fifth pair of sizes and density.
+  // A smaller share tests every fifth pair of sizes and density.
   const bool all = test_share() >= 100;
   std::size_t pairs = 0;
   for (const std::size_t density : kDensities)

@@ -29,7 +29,7 @@ TEST(Filter, KeepsWhatHoldsInOrder) {
 
 TEST(Partition, PutsWhatHoldsFirstBothInOrder) {
   for (const std::size_t n : kSizes) {
-    // The low digits tell equal elements apart, so that the order is seen.
+    // The low digits tell equal elements apart, which shows their order.
     auto in = random_values<std::uint64_t>(n, 100);
     for (std::size_t i = 0; i < n; ++i) in[i] = in[i] << 32 | i;
     for (const std::uint32_t threshold : kThresholds) {

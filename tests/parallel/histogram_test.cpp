@@ -7,7 +7,7 @@
 namespace rastrum::parallel::test::histogram_test {
 namespace {
 
-/// Indices of a histogram, some of them outside: anywhere, or nearly all in one bin.
+/// Indices of a histogram, some out of range; spread out, or nearly all in one bin.
 std::vector<std::int32_t> random_indices(std::size_t n, std::size_t bins, bool crowded) {
   std::mt19937 random(static_cast<std::uint32_t>(n + bins));
   std::vector<std::int32_t> indices(n);
@@ -28,7 +28,7 @@ void apply(std::vector<T>& dest, const std::vector<std::int32_t>& indices,
     }
 }
 
-/// On what bins hold already, of numbers that `make(n, seed)` makes.
+/// With bins that already hold numbers, which `make(n, seed)` makes.
 template <class Make, class Op>
 void expect_loop(std::initializer_list<std::size_t> bin_counts, const Make& make, const Op& op) {
   for (const std::size_t n : kSizes)

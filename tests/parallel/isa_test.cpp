@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// available_isas, which asks the processor by the compiler's runtime, against Highway's own
-// question; and that an instruction set that is not there is an error.
+// available_isas, which asks the compiler's runtime, agrees with Highway; and a missing instruction
+// set is an error.
 #include <algorithm>
 #include <cstdint>
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Words on more than 2³¹ elements, where a 32-bit index or count would wrap. Skipped, visibly,
-// where the machine has not the memory free.
+// Words on more than 2³¹ elements, where a 32-bit index or count would wrap. Skipped, with a
+// message, if too little memory is free.
 #include <cstdint>
 #include <fstream>
 #include <limits>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMany = (std::size_t{1} << 31) + 12345;
 
-/// GiB that can be had without swapping; unlimited where the system does not say.
+/// Memory that is available without swapping, GiB; unlimited if the system does not say.
 double available_gib() {
   std::ifstream in("/proc/meminfo");
   for (std::string key, rest; in >> key && std::getline(in, rest);)
@@ -84,7 +84,7 @@ TEST(Large, SortByKey) {
   sort_by_key(exec, keys, values);
   for (std::size_t i = 0; i < kMany; ++i) {
     ASSERT_TRUE(i == 0 || keys[i - 1] <= keys[i]);
-    // Stable: the value counts the elements of its key, modulo 256.
+    // Stable: the value counts its key's elements, modulo 256.
     ASSERT_EQ(values[i], static_cast<std::uint8_t>(seen[keys[i]]++));
   }
   EXPECT_EQ(seen, counts);

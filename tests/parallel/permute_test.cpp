@@ -100,7 +100,7 @@ TEST(Scatter, StencilLeavesTheRestAlone) {
     std::vector<std::uint32_t> expected(n, 42);
     for (std::size_t i = 0; i < n; ++i) {
       if (stencil[i] != 0) expected[map[i]] = in[i];
-      // An index behind a false stencil may be anything.
+      // The index may be anything if its stencil is false.
       if (stencil[i] == 0) map[i] = 0xFFFFFFFFU;
     }
     on_every_backend([&](auto& exec) {

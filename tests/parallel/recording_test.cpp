@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Loops in order, and what a recording holds of loops: all tasks, once, with times that add up.
+// Loops in order, and recordings: all tasks once, with consistent times.
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -24,7 +24,7 @@ TEST(ForEachInOrder, EachIndexOnceAndBegunInOrder) {
       std::atomic<std::size_t> begun = 0;
       for_each_in_order(exec, n, [&](std::size_t i) {
         ++calls[i];
-        // Whoever has taken an index before may not have come here yet: one a thread.
+        // Each thread may hold one index that it took earlier.
         EXPECT_LE(i, begun.fetch_add(1) + static_cast<std::size_t>(count));
       });
       EXPECT_EQ(calls, std::vector<int>(n, 1));
@@ -58,7 +58,7 @@ void spin() {
   }
 }
 
-/// The loop's tasks are its indices, each once, within its time.
+/// Expects each index of the loop as one task within the loop's time.
 void expect_whole(const Recording::Loop& loop) {
   std::vector<int> found(loop.n, 0);
   for (const Recording::Task& task : loop.tasks) {
@@ -92,7 +92,7 @@ TEST(Recording, HoldsAllTasksOfAllLoops) {
     for (std::size_t l = 1; l < 4; ++l)
       EXPECT_LE(recording.loops[l - 1].end_ns, recording.loops[l].begin_ns);
     if (count > 1) continue;
-    // On one thread tasks come one after the other and take what they take.
+    // On one thread tasks do not overlap.
     for (const Recording::Loop& loop : recording.loops) {
       std::int64_t at = loop.begin_ns;
       for (const Recording::Task& task : loop.tasks) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// reduce, the scans, reduce_by_key: definitions, and one result whatever the backend.
+// reduce, scans and reduce_by_key: their definitions, and equal results on all backends.
 #include <bit>
 #include <numeric>
 
@@ -28,7 +28,7 @@ TEST(Reduce, ComputesInTheTypeOfTheIdentity) {
 TEST(Reduce, FloatSumsHaveOneResult) {
   for (const std::size_t n : kSizes) {
     const std::vector<float> values = random_floats(n);
-    // The documented cut: blocks from the left, then their sums from the left.
+    // The documented order: blocks from the left, then their sums from the left.
     float expected = 0;
     for (std::size_t b = 0; b < n; b += kBlock) {
       float block = values[b];
@@ -46,7 +46,7 @@ TEST(Scan, ExclusiveAndInclusiveMatchTheirDefinitions) {
   for (const std::size_t n : kSizes) {
     const std::vector<Affine> maps = random_maps(n);
     std::vector<Affine> before(n), with(n);
-    Affine sum{3, 4};  // an initial value other than the identity is put before everything
+    Affine sum{3, 4};  // an initial value other than the identity comes first
     for (std::size_t i = 0; i < n; ++i) {
       before[i] = sum;
       sum = then(sum, maps[i]);
@@ -88,7 +88,7 @@ TEST(Scan, FloatSumsHaveOneResultOnAllBackends) {
   });
 }
 
-/// Runs of equal keys: short ones, one that spans many blocks, and keys that come again.
+/// Runs of equal keys: short ones, one that spans many blocks, and recurring keys.
 std::vector<std::uint32_t> keys_in_runs(std::size_t n) {
   std::vector<std::uint32_t> keys(n);
   std::mt19937 random(static_cast<std::uint32_t>(n));

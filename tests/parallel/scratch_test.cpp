@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// for_each_with_scratch: every index once, no two bodies with one scratch at a time, kept memory.
+// for_each_with_scratch: every index once, no scratch in two bodies at a time, memory kept.
 #include <atomic>
 
 #include "tests/parallel/backends.hpp"

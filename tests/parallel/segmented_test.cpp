@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// segmented_scan: its definition, and one result whatever the backend.
+// segmented_scan: its definition, and equal results on all backends.
 #include <numeric>
 
 #include "tests/parallel/backends.hpp"
@@ -7,7 +7,7 @@
 namespace rastrum::parallel::test::segmented_test {
 namespace {
 
-/// Where segments of these sizes begin, and how many elements there are.
+/// The starts of segments of these sizes, and the number of elements.
 std::pair<std::vector<std::uint32_t>, std::size_t> begins(const std::vector<std::uint32_t>& sizes) {
   std::vector<std::uint32_t> first(sizes.size());
   std::exclusive_scan(sizes.begin(), sizes.end(), first.begin(), 0U);

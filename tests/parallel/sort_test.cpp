@@ -30,7 +30,7 @@ void sorts_like_stable_sort(const std::vector<K>& keys, int bits) {
 TEST(SortByKey, IsStableAndSortsByTheLowBits) {
   for (const std::size_t n : kSizes) {
     SCOPED_TRACE(n);
-    // Few distinct keys show stability, many show order; odd and even numbers of passes.
+    // Few distinct keys test stability, many test order; odd and even numbers of passes.
     sorts_like_stable_sort(random_values<std::uint32_t>(n, 10), 32);
     sorts_like_stable_sort(random_values<std::uint32_t>(n, std::uint64_t{1} << 32), 32);
     sorts_like_stable_sort(random_values<std::uint32_t>(n, std::uint64_t{1} << 32), 20);
@@ -42,7 +42,8 @@ TEST(SortByKey, IsStableAndSortsByTheLowBits) {
   }
 }
 
-// Most keys in one bucket of the first pass, too large for one thread, with one digit left or more.
+// Most keys are in one bucket of the first pass, too large for one thread, with one or more digits
+// left.
 TEST(SortByKey, OneHugeBucket) {
   for (const int bits : {14, 20, 31, 40, 53, 64}) {
     SCOPED_TRACE(bits);

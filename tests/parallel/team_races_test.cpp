@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A missing sync of a team is a race that the thread sanitizer reports, whoever came first: bodies
-// that are right, and the same with one sync left out, each in a process of its own. Here the
-// results are right all the same, so that no other test would see it.
+// The thread sanitizer reports a team's missing sync as a race, whatever the timing. Tests correct
+// bodies, and the same with one sync removed, each in a process of its own. Here the results are
+// correct anyway, so no other test would notice.
 #include <cstdlib>
 #include <string>
 #include <vector>
@@ -18,7 +18,7 @@ struct Shared {
   std::uint32_t value[kValues];
 };
 
-/// Every element of `out` is the sum of all values; whoever is first has written them all.
+/// Each element of `out` is the sum of all values; the first member writes them all.
 struct Sum {
   std::uint32_t* out;
   bool syncs_before, syncs_after;
@@ -35,7 +35,7 @@ struct Sum {
   }
 };
 
-/// Exits with 0 where the sums are right; the thread sanitizer makes that 66 where it saw a race.
+/// Exits with 0 if the sums are right; the thread sanitizer exits with 66 after a race.
 [[noreturn]] void sums(bool syncs_before, bool syncs_after) {
   std::vector<std::uint32_t> out(3, 0);
   {
@@ -46,7 +46,7 @@ struct Sum {
   std::exit(out == std::vector<std::uint32_t>{66, 78, 90} ? 0 : 1);
 }
 
-/// A member that adds to a word of another's outside of an atomic.
+/// A member that adds to another's word without an atomic.
 struct Marks {
   std::uint32_t* out;
   bool is_atomic;
@@ -72,7 +72,7 @@ struct Marks {
   }
   std::exit(out == (1U << cuda_system::kTeamMembers<128>)-1U ? 0 : 1);
 }
-/// Elements of a loop that each add to the same word.
+/// A loop whose elements all add to the same word.
 struct Count {
   std::uint32_t* sum;
   bool is_atomic;
@@ -106,7 +106,7 @@ class TeamRaces : public testing::TestWithParam<Case> {};
 
 TEST_P(TeamRaces, AreReported) {
   if (!cuda_system::kRacesAreSeen) GTEST_SKIP() << "built without the thread sanitizer";
-  // A process of its own from the start, since this one may have had threads.
+  // A new process, since this one may already have threads.
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(GetParam().run(), testing::ExitedWithCode(GetParam().is_race ? 66 : 0),
               GetParam().is_race ? "ThreadSanitizer: data race" : "");

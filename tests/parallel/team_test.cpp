@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// for_each_team of a device: every body once by each member, scratch of its own, and a sync that is
-// one.
+// A device's for_each_team: each member runs every body once, each team has its own scratch, and
+// sync works.
 #include <numeric>
 
 #include "tests/parallel/backends.hpp"
@@ -13,8 +13,8 @@ struct Shared {
   std::uint32_t value[kValues];
 };
 
-// A prefix sum by doubling: each step reads what other members wrote in the step before, so it is
-// wrong wherever one runs ahead of a sync, or another team has the same scratch.
+// A prefix sum by doubling: each step reads what other members wrote in the last one. So it is
+// wrong if a member passes a sync early, or if another team has the same scratch.
 struct PrefixSum {
   const std::uint32_t* in;
   std::uint32_t* out;

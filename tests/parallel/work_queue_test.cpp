@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// WorkQueue: each item once, whoever pushes and pops.
+// WorkQueue: each item is popped once, with any threads.
 #include <algorithm>
 #include <atomic>
 #include <numeric>

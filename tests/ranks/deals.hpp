@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which rank holds which part: deals of all kinds, and the pictures of each against one renderer's.
+// Distributes parts over ranks ("deals") and compares the pictures with one renderer's.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ inline Deal round_robin(int ranks) {
   for (std::uint64_t p = 0; p < kParts; ++p) deal[p % deal.size()].push_back(p);
   return deal;
 }
-/// With empty ranks, and parts of a rank in any order.
+/// With empty ranks, and a rank's parts in any order.
 inline Deal random_deal(int ranks, Random& random) {
   Deal deal(static_cast<std::size_t>(ranks));
   for (std::uint64_t p = 0; p < kParts; ++p) {
@@ -48,7 +48,8 @@ inline FrameOptions frame_of(Shader shader, int width, int height) {
       .width = width, .height = height, .shader = shader, .background = {0.1F, 0.2F, 0.3F, 0.5F}};
 }
 
-/// One picture of each deal, by each exchange, against one renderer's. `of_rank`: each rank's.
+/// Compares one picture of each deal and each exchange with one renderer's. `of_rank`: each rank's
+/// options.
 inline void expect_equal(const Scene& scene, const FrameOptions& frame,
                          const std::vector<int>& counts, std::uint64_t seed,
                          const RendererOptions& of_rank = kSerialRank, RanksOptions options = {}) {
@@ -60,7 +61,7 @@ inline void expect_equal(const Scene& scene, const FrameOptions& frame,
                                   random_deal(n, random)};
     constexpr WordExchange kForms[] = {WordExchange::shared, WordExchange::sparse,
                                        WordExchange::two_hops};
-    // Where few scenes are drawn each deal goes by one form, else by all but the last.
+    // With a small test share, each deal uses one exchange, else all but the last.
     const bool few = test_share() < 100;
     for (std::size_t d = 0; d < deals.size(); ++d)
       for (std::size_t form = 0; form < std::size(kForms); ++form) {
@@ -82,8 +83,8 @@ inline void expect_equal(std::uint64_t seed, bool with_materials, const FrameOpt
   expect_equal(PartsScene(seed, kParts, with_materials).scene, frame, counts, seed);
 }
 
-/// Generated scenes on three ranks, their frames as change(frame, seed) has them; those with one
-/// instance beside ranks that have none. Returns how many had layers.
+/// Generated scenes on three ranks, with frames from change(frame, seed). Scenes with one instance
+/// leave ranks empty. Returns the number of scenes with layers.
 template <class Change, class OfRank>
 int expect_equal_generated(std::uint64_t seeds, const Change& change, const OfRank& of_rank) {
   int layered = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Edges over a picture of ranks are those of one renderer's, bit for bit.
+// Edges over the picture of ranks have the bits of one renderer's.
 #include <string>
 
 #include <gtest/gtest.h>

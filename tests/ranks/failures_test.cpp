@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An error on one rank ends the frame on all ranks with the same error, in whichever phase, and the
-// ranks draw the next frame as if nothing had happened.
+// An error on one rank, in any phase, ends the frame on all ranks with the same error, and the next
+// frame is not affected.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -23,7 +23,6 @@
 namespace rastrum::test::failures_test {
 namespace {
 
-/// How ranks draw.
 struct Way {
   int samples = 1;
   RanksOptions options{};
@@ -46,8 +45,8 @@ std::vector<std::string> messages(LocalRanks& ranks, int count, const SceneView&
     own.instances =
         r < all.instances.size() ? all.instances.subspan(r, 1) : std::span<const InstanceView>{};
     const std::uint64_t part = r;
-    // With shadows one thread draws, not the serial device: a light's picture is larger than the
-    // rest.
+    // Shadows need a drawing thread instead of the serial device, because a light's picture is
+    // large.
     Renderer renderer(way.shadows ? kThreadRank : kSerialRank);
     Targets targets;
     if (r == 0) targets = {.color8 = image, .ids = ids};
@@ -61,8 +60,8 @@ std::vector<std::string> messages(LocalRanks& ranks, int count, const SceneView&
   return said;
 }
 
-/// With a translucent part, the first, so that there are the phases of layers, and numbers whose
-/// range is agreed on.
+/// The first part is translucent, so that there are layers' phases, and there are numbers, whose
+/// range the ranks agree on.
 Scene glass() {
   Scene scene = PartsScene(9, 3, false).scene;
   scene.instances[0].opacity = 0.5F;
@@ -77,7 +76,7 @@ class Failures : public testing::Test {
   const Scene scene = glass();
   const SceneBinding binding{scene};
 
-  /// All ranks go through the same.
+  /// The phases, which are the same on all ranks.
   std::set<std::string> phases(const Way& way = {}) {
     std::set<std::string> names;
     LocalRanks two(2);
@@ -143,9 +142,8 @@ TEST_F(Failures, EndTheFrameOnAllRanksInEachPhaseOfShadows) {
   expect_alike(names, 2, way);
 }
 
-/// One rank fails in each phase of each way to draw, others by chance in phases of their own, each
-/// in one of several ways: all hear the same. How long it took is told, not asked for: a hang is
-/// CTest's timeout.
+/// In each phase of each way to draw one rank fails, and others fail at random phases, in several
+/// ways. All ranks must report the same. A hang is CTest's timeout.
 TEST_F(Failures, AtRandomNeverHang) {
   constexpr int kRanks = 3;
   struct At {
@@ -178,7 +176,7 @@ TEST_F(Failures, AtRandomNeverHang) {
     const At& at = all[i % all.size()];
     struct Plan {
       std::size_t phase = 0;
-      int how = 0;  ///< 0: not at all
+      int how = 0;  ///< 0: does not fail
     };
     Plan plans[kRanks];
     for (int r = 0; r < kRanks; ++r) {
@@ -224,7 +222,7 @@ TEST_F(Failures, KeepCodeAndKind) {
                  if (phase == "shade" && r == 1) throw Stopped{};
                }),
                Stopped);
-  // The lowest rank's error is reported if there are two.
+  // With two errors, the lowest rank's is reported.
   expect_refused("rank 1: early", Errc::io, [&] {
     draw([](std::string_view phase, int r) {
       if (phase == "draw" && r > 0) throw Error(Errc::io, r == 1 ? "early" : "late");

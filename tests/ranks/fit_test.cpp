@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cameras that ranks fit to parts that they have are those of one scene, of the same bits.
+// Cameras that ranks fit to their parts equal one scene's, bit for bit.
 #include <cstring>
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Mail by two hops: each pair of ranks has somebody between, whom both know, and pictures by it
-// send fewer messages for the same bits (deals.hpp compares those).
+// Messages in two hops: each pair of ranks has a rank between that both know. Pictures take fewer
+// messages for the same bits (deals.hpp compares those).
 #include <algorithm>
 #include <cstdint>
 #include <vector>
@@ -22,7 +22,7 @@ TEST(HopGrid, WhoIsBetweenKnowsBoth) {
   for (std::size_t n = 1; n < 80; ++n) {
     const ranks::HopGrid grid(n);
     for (std::size_t from = 0; from < n; ++from) {
-      // The others send to whom they name, and nobody waits for who does not send.
+      // Senders and receivers agree, so nobody waits for a rank that does not send.
       for (const std::size_t peer : grid.first_to(from))
         ASSERT_TRUE(has(grid.first_from(peer), from)) << n << " " << from;
       for (const std::size_t peer : grid.first_from(from))
@@ -38,7 +38,7 @@ TEST(HopGrid, WhoIsBetweenKnowsBoth) {
   }
 }
 
-/// Mail of all sizes from all to all, through phases that agree.
+/// Messages of all sizes between all ranks, through agreed phases.
 TEST(Hops, BringWhatAnExchangeBrings) {
   for (const int n : {1, 2, 3, 5, 7, 16, 23}) {
     LocalRanks ranks(n);
@@ -61,7 +61,7 @@ TEST(Hops, BringWhatAnExchangeBrings) {
   }
 }
 
-/// With many ranks that have little to say hops are taken, and fewer messages sent.
+/// With many ranks and small messages, two hops are taken and save messages.
 TEST(Hops, AreTakenWhereMessagesCost) {
   const Whole whole(PartsScene(8, kParts, false).scene, frame_of(Shader::phong, 96, 96));
   Image<std::int64_t> ids(96, 96);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Translucent surfaces of parts on several ranks are blended as one renderer blends them: all
-// targets have the same bits, for any number of ranks and any deal, in one band or in many.
+// Translucent parts on several ranks are blended as by one renderer: all targets have the same
+// bits, for any number of ranks and any deal, in one band or many.
 #include <algorithm>
 #include <cstdint>
 #include <utility>
@@ -16,7 +16,7 @@
 namespace rastrum::test::ranks_layers_test {
 namespace {
 
-/// Triangles, spheres and a tube; some parts are translucent, by their opacity or their colour.
+/// Triangles, spheres and a tube. Some parts are translucent, by opacity or colour.
 Scene glass(std::uint64_t seed, bool with_materials) {
   Scene scene = PartsScene(seed, kParts, with_materials).scene;
   Random random(seed + 1000);
@@ -55,7 +55,7 @@ TEST(RanksLayers, EqualOneRendererForManyRanksAndSizes) {
   expect_equal(glass(23, true), frame_of(Shader::material, 131, 67), {8}, 23, kThreadRank);
 }
 
-/// Translucent surfaces on some ranks alone: linear light is of all.
+/// Only some ranks have translucent surfaces, but linear light applies to all.
 TEST(RanksLayers, EqualOneRendererWhereFewPartsAreTranslucent) {
   for (std::uint64_t seed = 30; seed < 36; ++seed) {
     Scene scene = PartsScene(seed, kParts, seed % 2 == 0).scene;
@@ -76,7 +76,7 @@ TEST(RanksLayers, EqualOneRendererWithOpacityOfTheFrame) {
   expect_equal(glass(41, true), frame, {3}, 41, kSerialRank);
 }
 
-/// Scenes with all that can have a colour, textures that blend, masks and scalars too.
+/// Scenes with everything that affects colours, also blended textures, masks and scalars.
 TEST(RanksLayers, EqualOneRendererForGeneratedScenes) {
   const int layered = expect_equal_generated(
       400,
@@ -88,7 +88,7 @@ TEST(RanksLayers, EqualOneRendererForGeneratedScenes) {
   EXPECT_GT(layered, 100);
 }
 
-/// Several samples: opaque scenes, translucent ones, and both with few parts of the other kind.
+/// Several samples: opaque scenes, translucent ones, and both with a few parts of the other kind.
 TEST(RanksLayers, EqualOneRendererWithSeveralSamples) {
   for (const bool with_materials : {false, true})
     for (const int samples : {4, 8}) {
@@ -111,9 +111,8 @@ TEST(RanksLayers, EqualOneRendererWithSeveralSamples) {
   expect_equal(glass(70, false), frame, {3}, 70, kThreadRank);
 }
 
-/// Meshes that are equal everywhere, opaque and translucent, on ranks in any order: layers of equal
-/// depth are blended by their parts' numbers, and an opaque one hides those behind it in that
-/// order.
+/// Equal meshes, opaque and translucent, on ranks in any order. Layers of equal depth blend by part
+/// number, and an opaque one hides those behind it in that order.
 TEST(RanksLayers, OfEqualDepthThePartsFollowTheirNumbers) {
   for (std::uint64_t opaque = 0; opaque < 6; ++opaque) {
     Scene scene = PartsScene(3, 1, false).scene;
@@ -124,7 +123,7 @@ TEST(RanksLayers, OfEqualDepthThePartsFollowTheirNumbers) {
       if (i != opaque) scene.instances[i].opacity = 0.25F;
     }
     LocalRanks ranks(4);
-    // In one pass, and in bands, which are told what hides; ids as colours count through all parts.
+    // In one pass, and in bands, which know what hides. Ids as colours count through all parts.
     for (const Shader shader : {Shader::phong, Shader::id}) {
       const Whole whole(scene, frame_of(shader, 40, 40));
       for (const Deal& deal : {Deal{{3, 0}, {1, 5}, {}, {2, 4}}, Deal{{5}, {4, 3}, {2, 1}, {0}},
@@ -159,7 +158,7 @@ TEST(RanksLayers, GoInBandsThatAreBounded) {
   whole.expect(ranks, round_robin(3), {}, {.memory_limit = 4U << 20, .threads = 1});
 }
 
-/// No rank sends fragments behind the nearest opaque surface of any rank, at any sample.
+/// No rank sends fragments that any rank's opaque surface hides, at any sample.
 TEST(RanksLayers, WhatIsHiddenIsNotSent) {
   Scene scene;
   for (const float z : {0.0F, -1.0F, -2.0F}) {
@@ -173,7 +172,7 @@ TEST(RanksLayers, WhatIsHiddenIsNotSent) {
   LocalRanks ranks(3);
   for (const bool in_bands : {false, true})
     for (const int samples : {1, 4}) {
-      if (in_bands && samples > 1) continue;  // there all of a rank's are sent
+      if (in_bands && samples > 1) continue;  // a rank then sends all of its fragments
       FrameOptions frame = frame_of(Shader::flat, 32, 32);
       frame.samples = samples;
       const Whole whole(scene, frame, Camera{.eye = {0, 0, 2}});
@@ -185,12 +184,12 @@ TEST(RanksLayers, WhatIsHiddenIsNotSent) {
         sent[r] = whole.draw_on(c, {&r, 1}, {.color8 = image}, options, kThreadRank).fragments;
       });
       const std::uint64_t one = static_cast<std::uint64_t>(samples) * 32 * 32;
-      // With several samples the opaque surface is sent so, too.
+      // With several samples the opaque surface is sent too.
       EXPECT_EQ(sent, (std::vector<std::uint64_t>{one, samples == 1 ? 0 : one, 0})) << samples;
     }
 }
 
-/// Every bin with fragments lies in one band, and bands hold no more than they may.
+/// Every bin with fragments is in one band, and bands keep their limit.
 TEST(RanksLayers, BandsCoverWhatHasFragments) {
   Random random(7);
   for (int round = 0; round < 300; ++round) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ranks that are threads: each function of a Communicator does what it says, what is sent is
-// counted to the byte, and a rank that leaves ends the others' waiting.
+// Ranks on threads: tests each function of a Communicator, the exact count of sent bytes, and that
+// a leaving rank ends the others' waiting.
 #include <array>
 #include <cstdint>
 #include <utility>
@@ -85,7 +85,7 @@ TEST(LocalRanks, CountRoundsOfAgreements) {
 TEST(LocalRanks, AgreeOnManyNumbers) {
   LocalRanks ranks(5);
   ranks.run([](Communicator& c) {
-    std::vector<std::uint64_t> values(19);  // of several meetings
+    std::vector<std::uint64_t> values(19);  // enough for several exchanges
     for (std::size_t i = 0; i < values.size(); ++i)
       values[i] = i % 5 == number_of(c.rank()) ? 100 + i : i;
     c.max_of_each(values);
@@ -93,8 +93,8 @@ TEST(LocalRanks, AgreeOnManyNumbers) {
   });
 }
 
-/// After an agreement all ranks see, at one address, what each has written. The memory grows and
-/// stays, and so do its numbers.
+/// After an agreement all ranks see at one address what each has written. Growing keeps the
+/// memory's contents.
 TEST(LocalRanks, OfOneNodeShareMemory) {
   for (const int node : {0, 5, 9}) {
     LocalRanks ranks(5, node);
@@ -128,11 +128,11 @@ TEST(LocalRanks, OfSeveralNodesShareNone) {
   }
 }
 
-/// More than there is: nobody has it, and what there is of it stays.
+/// A request for too much fails on all ranks, and existing memory stays.
 TEST(LocalRanks, WithoutMemoryShareNone) {
   LocalRanks ranks(3);
   ranks.run([](Communicator& c) {
-    // More than a vector may have: sanitizers end the program where less is not to be had.
+    // More than a vector can have, because sanitizers end the program if less is not available.
     EXPECT_TRUE(c.share(~std::size_t{0} / 8).empty());
     EXPECT_TRUE(c.share(~std::size_t{0}).empty());
     EXPECT_EQ(c.share(7).size(), 7U);

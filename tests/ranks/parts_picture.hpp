@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scenes of many parts, one picture of them by one renderer and one by ranks, and what differs.
+// Scenes of many parts, pictures of them by one renderer and by ranks, and their differences.
 #pragma once
 
 #include <cstring>
@@ -22,7 +22,7 @@
 
 namespace rastrum::test {
 
-/// Images for all targets that ranks can fill, full of nonsense.
+/// Images for all targets that ranks can fill, which begin with nonsense.
 class AllTargets {
  public:
   AllTargets(int width, int height, bool linear)
@@ -40,7 +40,7 @@ class AllTargets {
   ranks::OwnImages images_;
 };
 
-/// All pixels of all targets; the message names the first one that differs.
+/// Compares all pixels of all targets; the message names the first difference.
 inline testing::AssertionResult same_targets(const Targets& a, const Targets& b) {
   std::string differs;
   const auto compare = [&](const auto& x, const auto& y, std::string_view name) {
@@ -61,13 +61,14 @@ inline testing::AssertionResult same_targets(const Targets& a, const Targets& b)
   return testing::AssertionFailure() << "targets differ:" << differs;
 }
 
-/// In the cube from −1 to 1, or in its plane at z. Braces order the evaluation, as calls do not.
+/// A point in the cube from −1 to 1, or in its plane at z. Braces fix the order of evaluation,
+/// unlike calls.
 inline Vec3 random_point(Random& random, std::optional<float> z = {}) {
   const auto number = [&] { return static_cast<float>(random.real(-1, 1)); };
   return z ? Vec3{number(), number(), *z} : Vec3{number(), number(), number()};
 }
 
-/// Meshes that pass through each other, some of them twice at one place, and spheres.
+/// Meshes that pass through each other, some twice at one place, and spheres.
 struct PartsScene {
   explicit PartsScene(std::uint64_t seed, int count, bool with_materials) {
     Random random(seed);
@@ -104,7 +105,7 @@ struct PartsScene {
 /// The parts that each rank holds, by their numbers.
 using Deal = std::vector<std::vector<std::uint64_t>>;
 
-/// Another's ranks, as if each were a process of its own.
+/// Another communicator, as if each rank were a process.
 class AsProcesses : public Communicator {
  public:
   explicit AsProcesses(Communicator& ranks) : ranks_(ranks) {}
@@ -128,7 +129,7 @@ class AsProcesses : public Communicator {
   Communicator& ranks_;
 };
 
-/// A scene with these of its instances alone.
+/// A scene with some of the instances.
 class SomeParts {
  public:
   SomeParts(const SceneView& all, std::span<const std::uint64_t> parts) : view_(all) {
@@ -146,7 +147,7 @@ class SomeParts {
 
 inline constexpr RendererOptions kSerialRank{.device = Device::serial}, kThreadRank{.threads = 1};
 
-/// A scene that ranks draw, how it is looked at, and one renderer's picture of it.
+/// A scene for ranks, its view, and one renderer's picture of it.
 class Whole {
  public:
   Whole(Scene drawn, const FrameOptions& options, const std::optional<Camera>& from = {},
@@ -164,7 +165,7 @@ class Whole {
     return shader_for(frame.shader, view()) == Shader::material;
   }
   [[nodiscard]] AllTargets images() const { return {frame.width, frame.height, is_linear()}; }
-  /// The renderer's picture, drawn when it is first asked for.
+  /// The renderer's picture, drawn on first use.
   [[nodiscard]] const Targets& one() const {
     if (!one_) {
       one_.emplace(frame.width, frame.height, is_linear());
@@ -177,7 +178,7 @@ class Whole {
     return stats_;
   }
 
-  /// This rank's share of a picture into the root's targets; `parts`: those that it holds.
+  /// Draws this rank's `parts` into the root's targets.
   RanksStats draw_on(Communicator& c, std::span<const std::uint64_t> parts, const Targets& targets,
                      const RanksOptions& options = {}, const RendererOptions& of_rank = kSerialRank,
                      const ranks::AtPhase& at = {}) const {
@@ -186,7 +187,7 @@ class Whole {
     return ranks::render_parts(c, renderer, held.view(), parts, camera, frame,
                                c.rank() == options.root ? targets : Targets{}, options, at);
   }
-  /// The picture of `ranks` into the root's targets; the root's statistics.
+  /// Draws by `ranks` into the root's targets. Returns the root's statistics.
   RanksStats draw(LocalRanks& ranks, const Deal& deal, const Targets& targets,
                   const RanksOptions& options = {}, const RendererOptions& of_rank = kSerialRank,
                   const ranks::AtPhase& at = {}, bool as_processes = false) const {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A picture of several ranks is that of one renderer, bit for bit, in all its targets: for any
-// number of ranks and any deal of the parts, by both exchanges.
+// A picture of several ranks equals one renderer's, bit for bit in all targets, for any number of
+// ranks, any deal, and both exchanges.
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -17,7 +17,7 @@
 namespace rastrum::test::parts_test {
 namespace {
 
-/// Vertices of a cluster are projected only if a drawing frame sees it.
+/// A cluster's vertices are projected only if a drawn frame sees the cluster.
 TEST(Parts, OfPreparedMeshesEqualOneRenderers) {
   Scene scene;
   for (int i = 0; i < kParts; ++i) {
@@ -53,14 +53,14 @@ TEST(Parts, EqualOneRendererForManyRanksAndSizes) {
   expect_equal(23, true, frame_of(Shader::material, 131, 67), {8});
 }
 
-/// Decisions of a renderer for a whole scene show with some seeds: colours on some ranks alone.
+/// Some seeds need decisions about the whole scene, such as colours on some ranks only.
 TEST(Parts, EqualOneRendererForManyScenes) {
   for (std::uint64_t seed = 100; seed < 112; ++seed)
     expect_equal(seed, seed % 4 == 0,
                  frame_of(seed % 2 == 0 ? Shader::automatic : Shader::lambert, 48, 40), {5});
 }
 
-/// Scenes with all that can have a colour, textures too, drawn opaque with one sample.
+/// Scenes with everything that affects colours, textures too, opaque with one sample.
 TEST(Parts, EqualOneRendererForGeneratedScenes) {
   expect_equal_generated(
       300,
@@ -71,7 +71,7 @@ TEST(Parts, EqualOneRendererForGeneratedScenes) {
       [](std::uint64_t) { return kSerialRank; });
 }
 
-/// Spheres, discs, tubes and cylinders, through each other and twice at one place.
+/// Spheres, discs, tubes and cylinders that cross, also twice at one place.
 TEST(Parts, EqualOneRendererOfSurfaces) {
   Scene scene;
   Random random(8);
@@ -109,7 +109,7 @@ TEST(Parts, EqualOneRendererOfSurfaces) {
   expect_equal(scene, frame_of(Shader::phong, 40, 30), {5}, 8);
 }
 
-/// 67 million pixels: minutes, so it is of `./dev check --full`.
+/// 67 million pixels take minutes, so only `./dev check --full` runs this.
 TEST(Parts, EqualOneRendererAt8192) {
   if (!is_full()) GTEST_SKIP() << kOnlyFull;
   constexpr int kSize = 8192;
@@ -141,7 +141,7 @@ TEST(Parts, EqualOneRendererWithLightsAToneAndPlanes) {
   expect_equal(30, true, frame, {3});
 }
 
-/// Meshes that are equal everywhere: the first part wins on whichever rank it is.
+/// Equal meshes: the first part wins on any rank.
 TEST(Parts, OfEqualDepthTheFirstPartWins) {
   PartsScene parts(3, 1, false);
   parts.scene.instances.resize(4, parts.scene.instances.front());
@@ -155,7 +155,7 @@ TEST(Parts, OfEqualDepthTheFirstPartWins) {
   }
 }
 
-/// Part numbers are an order and need not be near each other.
+/// Part numbers only order the parts, so they may have gaps.
 TEST(Parts, NumbersMayHaveGaps) {
   const Whole whole(PartsScene(4, 3, false).scene, frame_of(Shader::id, 40, 40));
   Image<std::int64_t> ids(40, 40);
@@ -182,7 +182,7 @@ TEST(Parts, KeepMemoryLimits) {
   whole.expect(ranks, round_robin(2), {}, {.memory_limit = 4U << 20, .threads = 1});
 }
 
-/// Words are what ranks draw: far away there are few of them, and they are most of what is sent.
+/// Ranks send the words that they draw. Far away there are few, but they are most of the traffic.
 TEST(Parts, SendTheWordsThatTheyDraw) {
   Whole whole(PartsScene(6, kParts, false).scene, frame_of(Shader::phong, 256, 256));
   Image<std::int64_t> ids(256, 256);
@@ -235,14 +235,14 @@ TEST(Parts, RefuseWhatNeedsMoreOfOthers) {
     refused("blended exactly", Errc::unsupported, frame, deal);
   }
   frame.samples = 1;
-  // Where nothing blends, it does not matter how.
+  // Without blending, the blending method does not matter.
   expect_equal(7, false, frame, {1, 2});
   frame.transparency = {.method = Transparency::none};
   expect_equal(7, false, frame, {2});
 }
 
-// One rank draws as it would alone, but for what several refuse: that it refuses, too, with samples
-// or without, and before it draws.
+// One rank draws as it would alone, but refuses what several ranks refuse, with and without
+// samples, before it draws.
 TEST(Parts, OneRankRefusesAsSeveralDoBeforeItDraws) {
   PartsScene parts(7, 4, false);
   constexpr Rgba8 kBefore{1, 2, 3, 4};

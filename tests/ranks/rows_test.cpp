@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A picture in bands of rows, of which the root holds one at a time, has the bits of the whole.
+// A picture in bands of rows, one at a time at the root, has the bits of the whole.
 #include <cstdint>
 #include <cstring>
 
@@ -11,7 +11,7 @@
 namespace rastrum::test::ranks_rows_test {
 namespace {
 
-/// The picture in bands, put together again.
+/// Draws the picture in bands and joins them.
 void draw_in_bands(const Whole& whole, LocalRanks& ranks, const Deal& deal, const Targets& picture,
                    RanksOptions options, const RendererOptions& of_rank) {
   const FrameOptions& frame = whole.frame;
@@ -39,7 +39,7 @@ void draw_in_bands(const Whole& whole, LocalRanks& ranks, const Deal& deal, cons
 void expect_equal_in_bands(const Scene& scene, const FrameOptions& frame, int count,
                            RanksOptions options, const RendererOptions& of_rank = kThreadRank) {
   const Whole whole(scene, frame);
-  for (const int node : {count, 1}) {  // of one machine, and each of its own
+  for (const int node : {count, 1}) {  // all ranks on one machine, and each on its own
     LocalRanks ranks(count, node);
     for (const Deal& deal : {round_robin(count), all_on_last(count)}) {
       const AllTargets many = whole.images();
@@ -85,7 +85,7 @@ TEST(RanksRows, WithShadowsIdsAndTheReference) {
                         {.rows = 64}, kSerialRank);
 }
 
-/// Fragments that do not fit are drawn in bands of a band.
+/// Bands whose fragments do not fit are drawn in smaller bands.
 TEST(RanksRows, InWhichFragmentsGoInBands) {
   for (const int samples : {1, 4}) {
     FrameOptions frame = frame_of(Shader::phong, 150, 160);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Layers on memory that ranks share: that they lie there where they find room, and that the picture
-// is one renderer's, however many ranks there are, whatever an earlier frame has left there.
+// Layers in memory that ranks share: they are there if they fit, and the picture is one renderer's,
+// for any number of ranks and any leftovers of earlier frames.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -23,7 +23,7 @@ namespace {
 
 constexpr std::string_view kLay = "lay fragments", kSend = "pack fragments", kTake = "take layers";
 
-/// A scene of opaque and translucent parts, or of these alone.
+/// A scene of opaque and translucent parts, or only translucent ones.
 Scene glass_of(bool all) {
   Scene scene = PartsScene(31, kParts, false).scene;
   for (std::size_t p = 0; p < kParts; ++p)
@@ -38,8 +38,8 @@ FrameOptions frame_with(int width, int height, int samples) {
 struct Glass : Whole {
   Glass(int width, int height, int samples = 1, bool all = false)
       : Whole(glass_of(all), frame_with(width, height, samples)) {}
-  /// Whether `ranks` draw the same; `phase`: one that has to be there. Threads draw into the root's
-  /// picture where they lay fragments, and what processes have seen the root takes.
+  /// Expects that `ranks` draw the same, and that `phase` occurs. Threads with shared fragments
+  /// draw directly into the root's picture; the root collects from processes.
   void expect(LocalRanks& ranks, const Deal& deal, std::string_view phase,
               const RanksOptions& options = {}, const RendererOptions& of_rank = kSerialRank,
               bool as_processes = false) const {
@@ -56,8 +56,8 @@ struct Glass : Whole {
   }
 };
 
-/// Opaque surfaces beside them, and none; in a first frame, which finds no room before it knows how
-/// much, and in one that does.
+/// With and without opaque surfaces; in a first frame, which finds no room because the need is
+/// unknown, and in a later one.
 TEST(SharedLayers, EqualOneRenderer) {
   Random random(3);
   for (const int samples : {1, 4})
@@ -88,7 +88,7 @@ TEST(SharedLayers, OfThreadsOfARank) {
     glass.expect(ranks, round_robin(3), kLay, {}, {.threads = 3}, as_processes);
 }
 
-/// Frames and bands of rows of other sizes, each on what the one before has left there.
+/// Frames and bands of other sizes, each on the leftovers of the one before.
 TEST(SharedLayers, LeaveNothingToLaterFrames) {
   const Glass small(40, 30), large(130, 90, 1, true), samples(50, 40, 4);
   LocalRanks ranks(5);
@@ -109,7 +109,7 @@ TEST(SharedLayers, LeaveNothingToLaterFrames) {
   EXPECT_TRUE(same_targets({.color = large.one().color}, {.color = whole}));
 }
 
-/// One that fails has laid its layers, blended some, and leaves no trace.
+/// A failed frame has stored and partly blended its layers, but leaves no trace.
 TEST(SharedLayers, OfAFrameThatFailedAreGone) {
   const Glass glass(60, 50), other(60, 50, 1, true);
   LocalRanks ranks(4);
@@ -133,7 +133,7 @@ TEST(SharedLayers, OfAFrameThatFailedAreGone) {
   }
 }
 
-/// Layers of all ranks may take more memory than the ranks may share; then they are sent.
+/// If all layers exceed the shared memory, they are sent.
 TEST(SharedLayers, FindRoomOrAreSent) {
   const Glass glass(120, 90, 1, true);
   LocalRanks ranks(12);
@@ -141,7 +141,7 @@ TEST(SharedLayers, FindRoomOrAreSent) {
     glass.expect(ranks, round_robin(12), phase, {},
                  {.memory_limit = limit, .device = Device::serial});
   };
-  // A quarter is more than three times what a rank holds, and less than what all do.
+  // A quarter is more than three times one rank's need, but less than all ranks'.
   constexpr std::uint64_t kLittle = std::uint64_t{4} << 20;
   expect(kLittle, kSend);
   expect(0, kLay);
@@ -152,7 +152,7 @@ TEST(SharedLayers, FindRoomOrAreSent) {
   glass.expect(of_nodes, round_robin(12), kSend);
 }
 
-/// The root goes while another is about to draw into its picture: that one finds none.
+/// The root leaves while another rank is about to draw into its picture, which must then be gone.
 TEST(SharedLayers, NobodyDrawsIntoAPictureThatHasGone) {
   class LeavesAtBlend final : public AsProcesses {
    public:
@@ -191,7 +191,7 @@ TEST(SharedLayers, NobodyDrawsIntoAPictureThatHasGone) {
   glass.expect(ranks, round_robin(3), kLay);
 }
 
-/// It waits for who is there.
+/// The root waits while ranks draw into its picture.
 TEST(SharedLayers, APictureStaysWhileSomebodyDrawsIntoIt) {
   std::vector<std::uint64_t> memory(100);
   const ranks::SharedLayers layers(memory, 5, 2);
@@ -214,7 +214,7 @@ TEST(SharedLayers, APictureStaysWhileSomebodyDrawsIntoIt) {
   }
 }
 
-/// Whoever asks first has it, and nobody what is not there.
+/// Memory is given to the first request, and never beyond its end.
 TEST(SharedLayers, RoomIsGivenOnce) {
   constexpr std::size_t kBlocks = 5, kNumbers = 40'000;
   constexpr int kRanks = 3;
@@ -243,14 +243,14 @@ TEST(SharedLayers, RoomIsGivenOnce) {
       end = s.data() + s.size();
     }
     EXPECT_LE(end, reinterpret_cast<const std::byte*>(&memory[0] + kNumbers));
-    // Single numbers fill the rest, to the last one.
+    // Single numbers fill the rest, up to the last.
     while (layers.room(1) != nullptr) {
     }
     EXPECT_EQ(layers.size(), kNumbers);
   }
 }
 
-/// Each block is one rank's, whoever asks first.
+/// Each block goes to the first rank that asks.
 TEST(SharedLayers, EachBlockIsTakenOnce) {
   constexpr std::size_t kBlocks = 1003;
   constexpr int kRanks = 4;

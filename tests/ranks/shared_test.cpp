@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Words on a surface that ranks share: when it is taken, that nothing of a frame is left on it for
-// the next, and how often ranks meet.
+// Words on a surface that ranks share: when it is used, that nothing of a frame stays for the next,
+// and how often ranks synchronize.
 #include <algorithm>
 #include <cstdint>
 #include <string_view>
@@ -32,16 +32,16 @@ TEST(SharedWords, AreTakenByRanksOfOneNode) {
     EXPECT_EQ(few.expect(of_nodes, round_robin(5), {.exchange = wanted}).exchange,
               WordExchange::sparse);
   }
-  // An exchange that was asked for is taken.
+  // An exchange that is requested is used.
   LocalRanks ranks(3);
   EXPECT_EQ(few.expect(ranks, round_robin(3), {.exchange = WordExchange::sparse}).exchange,
             WordExchange::sparse);
 }
 
-/// The surface is a quarter of a rank's memory limit at most, and all ranks keep the least.
+/// The surface takes at most a quarter of a rank's memory limit; the smallest limit counts.
 TEST(SharedWords, AreNotTakenWhereMemoryIsScarce) {
   const Few few(1024, 1024);
-  // Words, and where layers begin, of which is as much as there are ranks and blocks.
+  // Words, and the table of layers, whose size depends on ranks and blocks.
   const std::uint64_t least = 4 * 8 * (1024 * 1024 + ranks::SharedLayers::table_size(128 * 128, 2));
   LocalRanks two(2);
   Image<std::int64_t> ids(1024, 1024);
@@ -59,7 +59,7 @@ TEST(SharedWords, AreNotTakenWhereMemoryIsScarce) {
   EXPECT_NE(exchange_with(least - 4), WordExchange::shared);
 }
 
-/// Nothing goes to owners but what the picture wants.
+/// Owners receive only what the picture needs.
 TEST(SharedWords, SendLess) {
   const Few few;
   const auto traffic = [&](WordExchange exchange) {
@@ -72,11 +72,11 @@ TEST(SharedWords, SendLess) {
   EXPECT_LT(shared.bytes, sparse.bytes);
 }
 
-/// A frame that fails with words on the surface leaves none to the next, which sees other things.
+/// A failed frame leaves no words on the surface for the next one, which shows other things.
 TEST(SharedWords, OfAFrameThatFailedAreGone) {
   LocalRanks ranks(4);
   for (const float opacity : {1.0F, 0.5F}) {
-    // The first parts alone, so that opaque surfaces are there, too.
+    // Only the first parts are translucent, so that there are opaque surfaces too.
     Scene scene = PartsScene(12, kParts, false).scene;
     for (std::size_t p = 0; p < kParts / 2; ++p) scene.instances[p].opacity = opacity;
     const Whole few(scene, frame_of(Shader::phong, 90, 70));
@@ -102,7 +102,7 @@ TEST(SharedWords, OfAFrameThatFailedAreGone) {
   }
 }
 
-/// Counts how often ranks meet.
+/// Counts the synchronizations of ranks.
 class Meetings final : public AsProcesses {
  public:
   using AsProcesses::AsProcesses;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A stop on one rank ends the work of all of them alike, wherever it comes; and what they tell of
-// their progress.
+// A stop on one rank, at any time, ends the work of all ranks alike; also tests the reports of
+// progress.
 #include <atomic>
 #include <cstdint>
 #include <stop_token>
@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kRanks = 3;
 
-/// Says yes from the n-th question on.
+/// Requests a stop from the n-th query on.
 class After {
  public:
   explicit After(int questions) : left_(questions) {}
@@ -32,7 +32,7 @@ class After {
   mutable std::atomic<int> left_;
 };
 
-/// Calls f(communicator) on each rank; what each threw: "" nothing, "stopped".
+/// Calls f(communicator) on each rank. Returns what each threw: "" for nothing, or "stopped".
 template <class F>
 std::vector<std::string> said_by(LocalRanks& ranks, const F& f) {
   std::vector<std::string> said(kRanks);
@@ -49,7 +49,6 @@ std::vector<std::string> said_by(LocalRanks& ranks, const F& f) {
   return said;
 }
 
-/// How ranks draw.
 struct Way {
   const char* name;
   FrameOptions frame;
@@ -74,7 +73,7 @@ std::vector<Way> ways() {
 
 class RanksStop : public testing::Test {
  protected:
-  /// One rank's part of a picture.
+  /// Draws one rank's part of a picture.
   void draw(Communicator& c, const Way& way, const RanksOptions& options, StopToken stop) const {
     const auto& parts = deal_[static_cast<std::size_t>(c.rank())];
     const SomeParts held(whole_.view(), parts);
@@ -107,7 +106,7 @@ TEST_F(RanksStop, OfOneRankIsThatOfAllWhereverItComes) {
     LocalRanks ranks(kRanks);
     for (const int who : {0, 1}) {
       int stopped = 0;
-      // Ever larger steps, until the picture is done before.
+      // In growing steps, until the picture is finished first.
       for (int after = 0, step = 1;; after += step, step += 1 + step / 8) {
         const After stop(after);
         const auto said = said_by(ranks, [&](Communicator& c) {

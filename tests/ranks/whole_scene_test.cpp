@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Properties of a whole scene, whichever ranks have its parts: shadows, the range of numbers,
-// boxes, lights and cameras; and targets as the root wants them.
+// Properties of the whole scene, on any ranks: shadows, the range of numbers, boxes, lights and
+// cameras; and the root's choice of targets.
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -50,7 +50,7 @@ TEST(WholeScene, ShadowsOnLayersOfSamples) {
   expect_shadows(scene, lit_frame(Shader::material, 4));
 }
 
-/// A part that shows numbers from `low` to `high`.
+/// Makes a part show numbers from `low` to `high`.
 void show(Scene& scene, std::size_t instance, double low, double high, std::uint32_t mapping) {
   Instance& i = scene.instances[instance];
   if (i.geometry) {
@@ -168,7 +168,7 @@ TEST(WholeScene, NarrowNumbersAndAnotherDistanceOfNothing) {
   EXPECT_TRUE(std::ranges::equal(one.distance.pixels(), many.distance.pixels()));
   EXPECT_EQ(std::ranges::count(many.depth.pixels(), kInfinity), 0);
   EXPECT_GT(std::ranges::count(many.depth.pixels(), -1), 0);
-  // A part's number is its id, and that may want more.
+  // A part's number sets its ids, which may need more bits.
   SceneView own = whole.view();
   own.instances = own.instances.first(1);
   LocalRanks two(2);

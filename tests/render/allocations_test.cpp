@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Any array, no copy: what a frame allocates does not grow with a mesh beyond what the packed one
-// needs, for every layout. And no std::bad_alloc leaves the library, whichever allocation fails. A
-// program of its own, because it counts what `new` is asked for.
+// Frames copy no array: the memory of a frame does not grow with a mesh beyond that of the packed
+// layout, for any layout. And whichever allocation fails, no std::bad_alloc leaves the library.
+// This is a program of its own because it counts allocations of `new`.
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
@@ -37,7 +37,7 @@ void* counted(std::size_t bytes, std::size_t alignment) {
   throw std::bad_alloc();
 }
 
-// Not inline: GCC takes free() of what `new` gave for a mistake where it sees both.
+// Not inline, because GCC warns if it sees free() of memory from `new`.
 [[gnu::noinline]] void release(void* p) noexcept {
   std::free(p);
 }
@@ -50,7 +50,7 @@ void* operator new(std::size_t n) {
 void* operator new(std::size_t n, std::align_val_t a) {
   return counted(n, static_cast<std::size_t>(a));
 }
-// The address sanitizer's own would not match the delete below.
+// The sanitizer's version would not match the delete below.
 void* operator new(std::size_t n, const std::nothrow_t&) noexcept {
   try {
     return counted(n, alignof(std::max_align_t));
@@ -76,7 +76,7 @@ namespace {
 
 constexpr std::uint64_t kSmall = 16 << 10;
 
-/// Bytes that a frame of a mesh takes: by `new`, and as scratch, which is accounted apart.
+/// The memory of a mesh's frame: from `new`, and scratch, which has an account of its own.
 struct Bytes {
   std::uint64_t asked, scratch;
 };
@@ -88,7 +88,7 @@ Bytes bytes_of(const GeometryView& geometry, FrameOptions look, std::uint64_t li
   std::vector<Material> materials(2);
   Image<Rgba8> image(look.width, look.height);
   Camera camera{.eye = {0.3, -0.8, 1.9}};
-  // One thread, so that what each keeps is the same from run to run.
+  // One thread, so that the threads' memory is the same in each run.
   Renderer renderer({.memory_limit = limit, .threads = 1});
   const std::uint64_t before = asked_for;
   const FrameStats stats = renderer.render({.instances = {&instance, 1}, .materials = materials},
@@ -105,13 +105,13 @@ TEST(Allocations, OfALayoutAreThoseOfThePackedMesh) {
       const Bytes packed = bytes_of(sheet.view(), look, limit);
       EXPECT_GT(packed.scratch, kSmall);
       for (const Layout& layout : layouts()) {
-        if (layout.name.ends_with("int16")) continue;  // of fewer vertices
+        if (layout.name.ends_with("int16")) continue;  // int16 has too few vertices
         Memory memory;
         const Bytes other = bytes_of(layout.view(sheet, memory), look, limit);
         EXPECT_LE(other.asked, packed.asked + kSmall) << layout.name;
         EXPECT_LE(other.scratch, packed.scratch + kSmall) << layout.name;
       }
-      // float64, too, whose picture may differ.
+      // float64 too, whose picture may differ.
       std::vector<Vec3d> wide(sheet.positions.begin(), sheet.positions.end());
       MeshView mesh = sheet.view();
       mesh.positions = wide;
@@ -123,7 +123,7 @@ TEST(Allocations, OfALayoutAreThoseOfThePackedMesh) {
 
 TEST(Allocations, OfSpheresAndTheirKinAreThoseOfThePackedOnes) {
   Cloud cloud(30000);  // a copy of any of its arrays is 120 KB or more
-  // A thread of small ones, so that not their pixels take the time.
+  // Small ones on one thread, so that pixels do not take the time.
   for (std::uint32_t i = 0; i < cloud.positions.size(); ++i) {
     cloud.radii[i] /= 64;
     cloud.pairs[i] = i ^ 1U;
@@ -135,7 +135,7 @@ TEST(Allocations, OfSpheresAndTheirKinAreThoseOfThePackedOnes) {
     for (const GeometryView& g : CloudViews(cloud).geometries())
       packed.push_back(bytes_of(g, look));
     for (const CloudLayout& layout : cloud_layouts()) {
-      // Small integers have clouds of fewer places.
+      // Small integers allow only fewer places.
       if (layout.name.find("int8") != std::string::npos ||
           layout.name.find("int16") != std::string::npos)
         continue;
@@ -151,8 +151,8 @@ TEST(Allocations, OfSpheresAndTheirKinAreThoseOfThePackedOnes) {
   }
 }
 
-/// Calls f() again and again; each time a later allocation of it fails, until it has no more. A
-/// share leaves out ever more of them.
+/// Calls f() until it makes no failing allocation; each time a later one fails. With a smaller test
+/// share it leaves out more and more of them.
 template <class F>
 void expect_no_bad_alloc(const char* what, const F& f) {
   SCOPED_TRACE(what);

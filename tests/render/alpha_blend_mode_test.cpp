@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Khronos' AlphaBlendModeTest: five plates whose texture's alpha falls from 1 at their label "1.0"
-// to 0 at ".00". Seen straight on, 100 px a unit, each plate is probed at the heights of its
+// Khronos' AlphaBlendModeTest: five plates whose alpha falls from 1 at the label "1.0" to 0 at
+// ".00". They are seen straight on at 100 px a unit, and each is probed at the heights of its
 // labels.
 #include <cmath>
 #include <cstdint>
@@ -22,7 +22,7 @@ namespace {
 constexpr int kWidth = 900, kHeight = 250;
 constexpr double kPxPerUnit = 100;
 
-/// A plate: its place in the file, which is that of its triangles, and its name there.
+/// A plate: its place, its triangles' position in the file, and its name there.
 struct Plate {
   const char* label;
   double x;
@@ -32,7 +32,7 @@ constexpr Plate kOpaque{"Opaque", -3, 30}, kBlend{"Blend", -1.5, 32},
     kCutoff25{"Cutoff 0.25", 0, 34}, kDefault{"Cutoff Default", 1.5, 36},
     kCutoff75{"Cutoff 0.75", 3, 38};
 
-/// The triangles of the wall behind come first.
+/// The file begins with the triangles of the wall behind.
 constexpr std::int64_t kWallEnd = 30;
 
 struct Probe {

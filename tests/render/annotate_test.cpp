@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A frame and what is drawn over it in one call: the same bits as the functions one by one, colours
-// alone change, and nothing depends on threads, instruction sets or what lay in the images before.
+// A frame and its annotations in one call: the same bits as from single functions. Only colours
+// change, and nothing depends on threads, instruction sets or earlier contents of the images.
 #include <cmath>
 #include <optional>
 
@@ -114,7 +114,7 @@ TEST(Annotator, KeepsNothingOfAnotherFrame) {
   const Frame expected = annotated(s, everything());
   Renderer renderer;
   Annotator annotator;
-  // Another size, another scene, then that one; in one call, in two, with edges made before.
+  // Draws another size and scene before this one; in one call or two, with edges made before.
   Image<Rgba8> small(20, 30);
   Annotations other = everything();
   other.bar.reset();
@@ -134,7 +134,8 @@ TEST(Annotator, KeepsNothingOfAnotherFrame) {
 
 TEST(Annotator, FindsSizesThatNobodyGave) {
   const Subject s;
-  // Boxes from −1 to 1 or so: the radius of a sphere around the corners, and 72 / 360 < 1 px.
+  // Boxes from about −1 to 1: the radius is that of a sphere around the corners, and 72 / 360 < 1
+  // px.
   const SceneBinding binding(s.scene);
   const double radius = fit_camera(binding.view(), 1, true).orthographic_height / 2;
   Annotations given, own;
@@ -186,7 +187,7 @@ TEST(Annotator, LeavesRoomForNumbers) {
   const double room = overlay::room_for_bounds(camera, box.min, box.max, 300, 200);
   EXPECT_GT(room, 1.3);
   EXPECT_NEAR(seen(a), room, 1e-6);
-  // Nothing has no box.
+  // An empty scene has no box.
   EXPECT_NEAR(std::tan(with_room(a, camera, SceneView{}, 300, 200).fov_rad / 2) /
                   std::tan(camera.fov_rad / 2),
               1.25, 1e-6);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Arrays of any kind are drawn without a copy: a mesh gives one picture, bit for bit, whatever the
-// types and strides of its arrays and the kind of its faces. float64 positions stand still far from
-// the origin. Arrays that cannot be drawn are refused by instance, array and place.
-// allocations_test.cpp tests what this costs in memory.
+// Arrays of any kind are drawn without a copy. A mesh gives the same picture, bit for bit, for all
+// types and strides of its arrays and all kinds of faces. float64 positions stay exact far from the
+// origin. Errors of arrays name instance, array and element. allocations_test.cpp tests the memory.
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -102,7 +101,7 @@ TEST(Arrays, EveryLayoutHasThePictureOfThePackedOne) {
   }
 }
 
-/// The triangles of a mesh one by one, as place() and read_triangles() tell them.
+/// The triangles of a mesh one by one, from place() and read_triangles().
 TEST(Arrays, FacesAreTrianglesInTheirOrder) {
   const std::vector<Vec3> positions(40);
   MeshView mesh{.positions = positions};
@@ -140,7 +139,7 @@ TEST(Arrays, FacesAreTrianglesInTheirOrder) {
   mesh.faces = {FaceKind::quads, {}};
   EXPECT_EQ(triangles(), (Triangles{{9, 8, 7, 0}, {9, 7, 6, 0}}));
   mesh.indices = {};
-  // One fan larger than what is read at once.
+  // One fan, larger than what is read at a time.
   const std::vector<Vec3> many(1000);
   mesh.positions = many;
   mesh.faces = {FaceKind::polygons, {}};
@@ -179,7 +178,7 @@ TEST(Arrays, NumbersAreWhatGltfMakesOfThem) {
 
 // Types of other libraries.
 
-/// As CUDA's float3.
+/// Like CUDA's float3.
 struct Plain {
   float x, y, z;
 };
@@ -192,7 +191,7 @@ struct Inner {
 struct Triangle {
   int a, b, c;
 };
-/// As glm::vec3.
+/// Like glm::vec3.
 class Unions {
  public:
   Unions() {}
@@ -207,7 +206,7 @@ class Unions {
     float z, b;
   };
 };
-/// As Eigen::Vector3d, which has copy constructors of its own.
+/// Like Eigen::Vector3d, which has its own copy constructors.
 class Indexed {
  public:
   Indexed(double a, double b, double c) : v_{a, b, c} {}
@@ -219,7 +218,7 @@ class Indexed {
  private:
   double v_[3];
 };
-// As large as three numbers, but something else.
+// Three numbers in size, but not a vector.
 struct ColoredPoint {
   float x, y;
   std::uint32_t rgb;
@@ -302,7 +301,7 @@ TEST(Arrays, TypesTellTheirNumbers) {
   }
 }
 
-/// Boxes on a plane, as a city has them, and a camera among them.
+/// A city of boxes on a plane, with a camera among them.
 struct City {
   std::vector<Vec3> positions;
   std::vector<std::uint32_t> indices;
@@ -349,8 +348,8 @@ TEST(Arrays, ACityInUtmCoordinatesStandsStill) {
   };
   const Frame home = picture(city.positions, {});
   ASSERT_GT(home.stats.pixels_covered, kW * kH / 4U);
-  // float64 at the origin and 5000 km away: rounded once each, so that a vertex may snap to the
-  // neighbouring 256th of a pixel, and seldom a pixel is another's.
+  // float64 positions at the origin and 5000 km away are rounded once each. So a vertex may snap to
+  // the neighbouring 256th of a pixel, and a few pixels may show another triangle.
   EXPECT_LE(ids_that_differ(home, picture(far, utm)), 12U);
   EXPECT_LE(ids_that_differ(home, picture(near, {})), 12U);
   // float32 rounds the positions to half metres.
@@ -365,7 +364,7 @@ TEST(Arrays, Float64HasTheSameBitsEverywhere) {
   Memory memory;
   MeshView strided = mesh;
   strided.positions = memory.view<Vec3>(&positions[0].x, positions.size(), 40, 1);
-  // Some of it behind the eye, for the clipper; large and not finite numbers.
+  // Some vertices are behind the eye, for the clipper; some are huge or not finite.
   std::vector<Vec3d> nasty = positions;
   nasty[3] = {1e200, 4e5, 100};
   nasty[11].x = std::numeric_limits<double>::quiet_NaN();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The library draws here what python/tests/test_pictures.py draws by the package and by the
-// program: all three find the digests `as_python/…` of tests/golden/hashes.txt.
+// Draws what python/tests/test_pictures.py draws by the package and by the program. All three must
+// match the digests `as_python/…` of tests/golden/hashes.txt.
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -18,7 +18,7 @@
 namespace rastrum::test::as_python_test {
 namespace {
 
-/// The numbers are exact, so that only the ways of drawing could make a difference.
+/// The numbers are exact, so only the ways of drawing could differ.
 struct Sheet {
   std::vector<Vec3> positions{};
   std::vector<std::uint32_t> corners{};

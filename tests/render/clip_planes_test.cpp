@@ -30,8 +30,8 @@ RenderOptions options() {
   return RenderOptions({.width = kW, .height = kH}, {.threads = 1});
 }
 
-/// A generated scene with up to three planes near where the camera looks, and for every second
-/// instance one of its own.
+/// A generated scene with up to three planes near the camera's target, and a plane for every second
+/// instance.
 struct Cut {
   GeneratedScene g;
   std::vector<ClipPlane> own;
@@ -50,12 +50,12 @@ struct Cut {
     own.push_back({direction(), r.real(-1, 1)});
     for (std::size_t i = 0; i < instances.size(); i += 2) instances[i].clip_planes = own;
   }
-  Cut(const Cut&) = delete;  // the instances' planes are this one's
+  Cut(const Cut&) = delete;  // the instances' planes belong to this object
   Cut& operator=(const Cut&) = delete;
   [[nodiscard]] SceneView scene() const { return {instances, g.scene.materials, g.scene.textures}; }
 };
 
-/// How far a corner lies in front of each plane that counts for it.
+/// The distance of a corner in front of each of its planes.
 std::vector<Real> ahead(const Cut& cut, const InstanceView& instance, Vec3 p) {
   std::vector<Real> values;
   const Point3 in_world = transformed(instance.object_to_world, p);
@@ -72,7 +72,7 @@ TEST(ClipPlanes, KeepThePixelsThatAnOracleKeeps) {
     const Cut cut(seed);
     const SceneView scene = cut.scene();
     const auto projected = project(scene, cut.g.camera, kW, kH);
-    // The oracle has snapped triangles; what the clipper makes is the next test's.
+    // The oracle takes whole snapped triangles. The next test covers the clipper's.
     if (std::ranges::any_of(projected, [](const auto& t) { return t.fate == Fate::needs_clip; }))
       continue;
     const Frame frame = draw(cut.options, scene, cut.g.camera);
@@ -107,7 +107,7 @@ TEST(ClipPlanes, KeepThePixelsThatAnOracleKeeps) {
             value += b[c] / sum * t.ahead[c][k];
             size += std::abs(b[c] / sum * t.ahead[c][k]);
           }
-          // A tie: what float64 may decide the other way.
+          // A tie, which float64 may decide differently.
           tie |= std::abs(value) <= 1e-12L * size;
           kept &= value >= 0;
         }
@@ -132,7 +132,7 @@ TEST(ClipPlanes, KeepThePixelsThatAnOracleKeeps) {
   RecordProperty("ties", ties);
 }
 
-// All that is left lies in front of the planes, also of triangles that the clipper cuts.
+// All visible points lie in front of the planes, also on clipped triangles.
 TEST(ClipPlanes, LeaveNothingBehindThem) {
   int seen = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
@@ -165,7 +165,7 @@ TEST(ClipPlanes, AreTheSameBitsWhateverDraws) {
       }
 }
 
-/// Surfaces with planes, and all outputs without.
+/// With all outputs, and clip planes on surfaces too.
 TEST(ClipPlanes, OfEveryRowOfTheFamily) {
   for (const family::AxisInfo& row : family::rasterizer_axis())
     for (const std::uint64_t seed : {0U, 3U, 8U}) {
@@ -198,7 +198,7 @@ TEST(ClipPlanes, ThatKeepAllChangeNothingAndThatKeepNothingLeaveNothing) {
   const Frame none = cut_by({{{0, 0, -1}, -100}});
   EXPECT_EQ(none.stats.pixels_covered, 0U);
   EXPECT_EQ(none.stats.fragments, 0U) << "whole triangles are left out early";
-  // Half a sphere shows its inside, further away than the front was.
+  // Half a sphere shows its inside, which is farther away than its front was.
   const Frame inside = cut_by({{{0, 0, -1}, 0}});
   EXPECT_LT(inside.depth(kW / 2, kH / 2), without.depth(kW / 2, kH / 2));
   EXPECT_GT(inside.depth(kW / 2, kH / 2), 0);
@@ -210,7 +210,7 @@ TEST(ClipPlanes, OfAnInstanceGoWithIt) {
   OneInstance turned(sphere.view(), rotation(rotation_about({0, 0, 1}, 1.5707963267948966)));
   turned.clip_planes = left;
   const Frame frame = draw(options(), turned.view(), {.eye = {0, 0, 3}});
-  // Its −x is the world's −y: what is left is the lower half.
+  // Its −x is the world's −y, so the lower half stays.
   EXPECT_EQ(frame.ids(kW / 2, kH / 2 - 8), -1);
   EXPECT_GE(frame.ids(kW / 2, kH / 2 + 8), 0);
 }
@@ -232,7 +232,7 @@ TEST(ClipPlanes, RefuseWhatIsNone) {
   instance.clip_planes = bad;
   expect_refused("instance 0: clip plane 0",
                  [&] { (void)draw(options(), instance.view(), {}, kDepth); });
-  // An index that is out of range is an error before a plane looks at its vertex.
+  // An index out of range is an error before a plane tests its vertex.
   const std::vector<std::uint32_t> indices{0, 1, 7};
   instance.show(MeshView{.positions = positions, .indices = indices});
   const std::vector<ClipPlane> good{{{1, 0, 0}, 0}};

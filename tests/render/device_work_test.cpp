@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The estimated costs of a frame of triangles, checked by hand, and which frames are worth a GPU.
+// Checks by hand the estimated costs of triangle frames, and which frames are worth a GPU.
 #include <rastrum/render/device_work.hpp>
 
 #include <vector>
@@ -9,7 +9,7 @@
 namespace rastrum::device_work_test {
 namespace {
 
-/// A frame that could be drawn, but for the source of its vertices.
+/// A valid frame, but without a source of vertices.
 struct Request {
   Request(std::size_t triangles, int width, int height)
       : indices(triangles * 3), picture(width, height) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Environments as lights of a frame, and behind it.
+// Environments as light and as background.
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -36,8 +36,8 @@ Image<Vec4> draw(const Look& look, FrameOptions frame, RendererOptions options =
   return color;
 }
 
-/// An environment takes 0.3 s of a core, ten times that under a sanitizer: a test makes one of a
-/// picture.
+/// An environment light takes 0.3 s of a core, ten times that under a sanitizer, so a test makes
+/// only one of a picture.
 Light light_of(const Environment& environment, float turn_rad = 0, Vec3 up = {0, 1, 0}) {
   return Light{.kind = EnvironmentLight{environment, up, turn_rad}};
 }
@@ -73,8 +73,8 @@ TEST(EnvironmentLights, ThatAreTheSameEverywhereAreAmbient) {
   }
 }
 
-// A hemisphere light is a picture that rises linearly, whose bands are all of it: matt surfaces
-// gather 2/3 of the rise.
+// A picture that rises linearly equals a hemisphere light: it has no higher bands, so a matt
+// surface gathers 2/3 of the rise.
 TEST(EnvironmentLights, ThatRiseAreAHemisphere) {
   const Look look;
   Image<Vec3> picture(128, 64);
@@ -89,7 +89,7 @@ TEST(EnvironmentLights, ThatRiseAreAHemisphere) {
   EXPECT_LE(most_apart(a, b), 1.0 / 255);
 }
 
-// Turned by a quarter it is the picture whose columns were moved by a quarter.
+// A quarter turn equals the picture with its columns moved by a quarter.
 TEST(EnvironmentLights, TurnAboutTheirUp) {
   const Look look;
   const Image<Vec3> picture = small_environment(BuiltinEnvironment::room);
@@ -104,7 +104,7 @@ TEST(EnvironmentLights, TurnAboutTheirUp) {
     EXPECT_LE(most_apart(draw(look, turned), draw(look, of_moved)), 0.02) << name(shader);
     EXPECT_GT(most_apart(draw(look, turned), draw(look, lit_by({light_of(room)}, shader))), 0.1);
   }
-  // With another up and the camera turned the same way nothing changes: +y to +x takes x to −y.
+  // Nothing changes if the up direction and the camera turn together: +y to +x takes x to −y.
   const Look empty{{}, look.camera};
   Look rolled = empty;
   const auto roll = [](Vec3d v) { return Vec3d{v.y, -v.x, v.z}; };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Colours, float32 and 8 bits, are the same bits on every instruction set, for every number of
-// threads and on the serial device: over generated scenes of all that can have a colour; and
-// colours by scalars, of meshes with all that has a colour, points, lines and quadrics.
+// Colours, float32 and 8 bits, have the same bits on every instruction set, for every number of
+// threads and on the serial device: over generated scenes with everything that affects colours, and
+// with colours by scalars on meshes, points, lines and quadrics.
 #include <algorithm>
 #include <deque>
 #include <limits>
@@ -38,11 +38,11 @@ TEST(EqualColors, OnEveryInstructionSet) {
     seen += static_cast<std::uint64_t>(
         std::ranges::count_if(expected.ids.pixels(), [](std::int64_t id) { return id >= 0; }));
   }
-  // Scenes that nobody sees compare nothing.
+  // Scenes without visible pixels would compare nothing.
   EXPECT_GT(seen, static_cast<std::uint64_t>(scenes) * 100);
 }
 
-/// Numbers for what has up to so many positions, a few of them none.
+/// Numbers for any geometry; a few are NaN.
 std::vector<double> numbers(std::uint64_t seed) {
   Random random(seed);
   std::vector<double> values;
@@ -69,7 +69,7 @@ std::size_t count_of(const MeshView& mesh, Per per) {
          : per == Per::face   ? mesh.face_count()
                               : 1;
 }
-/// For points, lines and quadrics: one number a position or primitive.
+/// Points, lines and quadrics have one number per position or primitive.
 template <class G>
 std::size_t count_of(const G& geometry) {
   if constexpr (requires { geometry.positions; })
@@ -78,8 +78,8 @@ std::size_t count_of(const G& geometry) {
     return geometry.centers.size();
 }
 
-/// Gives all instances numbers, one each where the seed says so. Returns the geometries that they
-/// then refer to.
+/// Gives all instances numbers, and single ones by the seed. Returns the geometries that they now
+/// refer to.
 [[nodiscard]] std::deque<GeometryView> number(std::vector<InstanceView>& instances,
                                               const std::vector<double>& values,
                                               std::uint64_t seed) {
@@ -112,7 +112,7 @@ class EqualScalars : public testing::Test {
     });
     pictures_.push_back(digest(picture.color).hex() + digest(picture.scalars).hex());
   }
-  /// `generate`: a scene by seed, width and height.
+  /// `generate` makes a scene from a seed, width and height.
   template <class Generate>
   void expect_equal_scenes(const Generate& generate) {
     for (std::uint64_t seed = 0; seed < 200; ++seed) {
@@ -131,7 +131,7 @@ class EqualScalars : public testing::Test {
     }
     expect_different(100);
   }
-  /// That the pictures are not all of nothing.
+  /// Expects that not all pictures are empty.
   void expect_different(std::size_t at_least) {
     std::ranges::sort(pictures_);
     pictures_.erase(std::unique(pictures_.begin(), pictures_.end()), pictures_.end());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One renderer draws frames of any size and look, each as one that was made for it alone; and a
-// Renderer without the family draws what the family's default draws.
+// A renderer draws frames of any size and look, each as a renderer made for it alone. Without the
+// family it draws the family's default.
 #include <algorithm>
 #include <cstdint>
 #include <vector>
@@ -48,8 +48,8 @@ TEST(FrameOptions, AreEachFramesOwn) {
       EXPECT_EQ(got.stats.shader, expected.stats.shader);
       if (by.memory_limit != 0) {
         EXPECT_LE(got.stats.peak_bytes, by.memory_limit);
-        // Scratch of other frames is given back. That is tested with one thread, because several
-        // share the work as they like.
+        // Scratch of earlier frames is given back. Tested with one thread, because several share
+        // the work unpredictably.
         EXPECT_LE(got.stats.peak_bytes, expected.stats.peak_bytes + (std::uint64_t{1} << 20));
       }
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Golden pictures of the procedural shapes, drawn by the serial device: and by
-// the threads: the same bits.
+// Golden pictures of the procedural shapes, drawn by the serial device; threads must give the same
+// bits.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,8 +33,8 @@ constexpr Picture kPictures[] = {
     {"soup_wireframe", [] { return shapes::soup(40, 0.3F, 1.2F); }, Shader::wireframe, 160, 120},
 };
 
-// From above and the side, a little off every axis. The near plane
-// touches the bounding sphere, so that depth is spread over its range.
+// From above and the side, off every axis. The near plane touches the bounding sphere, so that
+// depths use their whole range.
 Camera oblique_camera(const SceneView& scene) {
   Camera c = fit_camera(scene, 0.8F, false);
   const float distance = length(Vec3(c.eye) - Vec3(c.target));

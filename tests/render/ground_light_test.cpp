@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ground under lights of its own: against their formulas in float64, against the sun that they can
-// say, and the same bits whoever lights it; its heights as numbers.
+// Lights on terrain: against their formulas in float64, against the equivalent sun, and with the
+// same bits on every backend; heights as numbers.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -47,7 +47,7 @@ std::vector<std::vector<Light>> sets_of_lights() {
   return sets;
 }
 
-/// The normal of a cell by central differences of what is around it.
+/// The normal of a cell by central differences of its neighbours.
 Vec3d normal_at(const HeightMap& map, int x, int y) {
   const auto at = [&](int i, int j) {
     const float h = map.heights(std::clamp(i, 0, kMap - 1), std::clamp(j, 0, kMap - 1));
@@ -56,7 +56,7 @@ Vec3d normal_at(const HeightMap& map, int x, int y) {
   return unit({-(at(x + 1, y) - at(x - 1, y)) / 2, 1, -(at(x, y + 1) - at(x, y - 1)) / 2});
 }
 
-/// The light that a white, matt surface gathers.
+/// The light that a white matt surface gathers.
 Vec3d arriving(const std::vector<Light>& lights, Vec3d p, Vec3d n) {
   Vec3d sum;
   for (const Light& l : lights) {
@@ -74,7 +74,7 @@ double reinhard(double x) {
   return x / (1 + x);
 }
 
-/// The largest difference of a channel, in codes, where f says what is expected in [0, 1].
+/// The largest difference of a channel in 8-bit codes; f gives the expected value in [0, 1].
 template <class Expected>
 double worst_difference(const Image<Rgba8>& lit, const HeightMap& map, const Expected& expected) {
   double worst = 0;
@@ -103,7 +103,7 @@ TEST(GroundLights, AreTheirFormulas) {
     const ShadowOptions clamped{.tiling = Tiling::clamp};
     EXPECT_LE(worst_difference(lit_colors(map, {.lights = lights}, clamped), map, display_value),
               1.0);
-    // Mapped, in linear light.
+    // Tone-mapped, in linear light.
     const auto mapped = [&](int x, int y) {
       const Rgba8 c = map.colors(x, y);
       const Vec3d l =
@@ -117,7 +117,7 @@ TEST(GroundLights, AreTheirFormulas) {
   }
 }
 
-/// A directional light from where the sun stands.
+/// A directional light from the sun's place.
 Light sunlight(const terrain::Sun& sun, float intensity) {
   const double a = sun.azimuth_deg * std::numbers::pi / 180,
                e = sun.elevation_deg * std::numbers::pi / 180;
@@ -166,7 +166,7 @@ TEST(GroundLights, CastTheShadowsOfTerrains) {
   }
   EXPECT_GT(hidden, 100);
   EXPECT_LT(hidden, kMap * kMap * 3 / 4);
-  // Each light has its own: where both are hidden it is dark, else at most one is left.
+  // Each light has its own shadow: it is dark where both are hidden, else at most one is missing.
   const terrain::Sun other{70, 30};
   const auto both = lit_colors(
       map, {.lights = {sunlight(sun, 1), sunlight(other, 1)}, .shadows = terrain::Shadows::sharp});
@@ -175,7 +175,7 @@ TEST(GroundLights, CastTheShadowsOfTerrains) {
     if (dark_too(x, y) != 0) {
       ASSERT_EQ(both(x, y), sharp(x, y));
     }
-  // Soft and accumulated ones lie between.
+  // Soft and accumulated shadows lie between.
   for (const terrain::Shadows kind : {terrain::Shadows::soft, terrain::Shadows::accumulated}) {
     const auto some = lit_colors(map, {.lights = one, .shadows = kind, .sun_radius_deg = 4});
     int between = 0;
@@ -209,12 +209,12 @@ TEST(GroundLights, OfTheCameraMoveWithIt) {
   const HeightMap map = hills();
   GroundLights of_camera{.lights = {headlight()}};
   of_camera.camera.angle_rad = 0.7;
-  // It looks along (−sin a, −cos a) over the map.
+  // The camera looks along (−sin a, −cos a) over the map.
   const std::vector<Light> in_world{
       light(DirectionalLight{Vec3(Vec3d{-std::sin(0.7), 0, -std::cos(0.7)})})};
   const auto a = lit_colors(map, of_camera), b = lit_colors(map, {.lights = in_world});
   EXPECT_LE(most_different(a, b), 1);
-  // One with a place, to the right of who looks north and above him.
+  // A lamp to the right of and above a viewer who looks north.
   GroundLights lamp{.lights = {light(PointLight{{5, 9, 0}}, 60)}};
   lamp.lights[0].of_camera = true;
   lamp.camera = {20, 30, 4, 0, 0, 0};
@@ -258,7 +258,7 @@ TEST(GroundLights, LightFunctionsWhereTheyAreSeen) {
             {-(wave(x + 1, y) - wave(x - 1, y)) / 2, 1, -(wave(x, y + 1) - wave(x, y - 1)) / 2});
         const Vec3d e = arriving(lights, {x, h, y}, n) * (h / 20);
         const Rgba8 c = lit.color_at(x, y);
-        // The colour before light is rounded to 8 bits, too.
+        // The colour before the light is rounded to 8 bits too.
         const Vec3d most = arriving(lights, {x, h, y}, n);
         for (const auto& [got, want, of] :
              {std::tuple{c.r, e.x, most.x}, {c.g, e.y, most.y}, {c.b, e.z, most.z}})
@@ -267,7 +267,7 @@ TEST(GroundLights, LightFunctionsWhereTheyAreSeen) {
       }
     EXPECT_LE(worst, 0.6) << lights.front().kind.index();
   }
-  // The march of each directional light: a wall takes the light behind it.
+  // Each directional light has a march of its own: a wall blocks the light behind it.
   const terrain::HeightFunction wall = [](const double* x, const double*, std::size_t n,
                                           float* out) {
     for (std::size_t i = 0; i < n; ++i) out[i] = x[i] > 10 && x[i] < 14 ? 30.0F : 0.0F;
@@ -308,7 +308,7 @@ TEST(HeightNumbers, AreMappedWhereTheyLie) {
   HeightMap map = hills();
   const ScalarMapping steps{.map = color_map("viridis"), .range = ScalarRange{0, 50}, .steps = 5};
   const ScalarColors colors(steps, {});
-  // In units of which each is a fifth of a cell high.
+  // One unit of height is a fifth of a cell.
   const auto cells = terrain::colors_of_heights(map.heights.view(), colors, 0.2);
   const auto code = [](float v) { return static_cast<std::uint8_t>(v * 255 + 0.5F); };
   const auto shown = [&](double number) {
@@ -317,7 +317,7 @@ TEST(HeightNumbers, AreMappedWhereTheyLie) {
   };
   for (const auto& [x, y] : pixels(kMap, kMap))
     ASSERT_EQ(cells(x, y), shown(static_cast<double>(map.heights(x, y)) / 0.2));
-  // Finer ones are mapped after heights were interpolated: no colour lies between two steps.
+  // Finer colours are mapped after the heights are interpolated, so none lies between two steps.
   const auto fine = terrain::colors_of_heights(map.heights.view(), colors, 0.2, 3);
   ASSERT_EQ(fine.width(), 3 * kMap);
   std::vector<Rgba8> all{shown(std::nan(""))};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Digests of pictures, and of what leads to them, that are the same on every machine: those of
-// tests/golden/hashes.txt. `./dev check --full` runs them on AArch64, too.
+// Digests of pictures and of intermediate results that are the same on every machine
+// (tests/golden/hashes.txt). `./dev check --full` runs this on AArch64 too.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -37,7 +37,7 @@
 namespace rastrum::test::hash_test {
 namespace {
 
-/// One digest of many.
+/// Combines many digests into one.
 class Sum {
  public:
   void add(const Digest& d) { bytes_.insert(bytes_.end(), d.bytes.begin(), d.bytes.end()); }
@@ -60,8 +60,8 @@ void add(Sum& sum, const Frame& frame) {
   sum.add(digest(frame.ids));
 }
 
-/// Where the instruction sets' pictures are one, so is this. By all of them; with a smaller share
-/// (test_share.hpp) by two, others for each picture of a test.
+/// Compares with the golden digest on all instruction sets. With a smaller share (test_share.hpp)
+/// on two, which differ from picture to picture of a test.
 template <class Draw>
 void expect_golden(const std::string& name, const Draw& draw) {
   const std::vector<Isa> isas = available_isas();
@@ -75,7 +75,7 @@ void expect_golden(const std::string& name, const Draw& draw) {
   }
 }
 
-/// The digests of a scene in these frames, 160 × 120, are the golden ones.
+/// Compares a scene's digests in these frames, 160 × 120, with the golden ones.
 void expect_golden_frames(const std::string& name, const Scene& scene,
                           const std::vector<FrameOptions>& frames, unsigned kinds = kPicture) {
   const Fitted fitted(scene, 0.8F);
@@ -210,7 +210,7 @@ TEST(Hashes, ElementaryFunctions) {
     std::vector<double> values;
     for (int i = 0; i < 10000; ++i) values.push_back(f(random.real(-1, 1)));
     for (int i = 0; i < 10000; ++i) {
-      // One a statement: compilers order arguments as they like.
+      // One draw per statement, because the order of arguments is unspecified.
       const int exponent = random.integer(-60, 60);
       values.push_back(f(std::ldexp(random.real(-1, 1), exponent)));
     }
@@ -395,7 +395,7 @@ TEST(Hashes, TerrainLight) {
     light.hill_shading = true;
     light.sun_radius_deg = 2;
     light.smooth = true;
-    light.march.steps = 16;  // of functions for each sample that is seen
+    light.march.steps = 16;  // functions are marched for each visible sample
     expect_golden(std::string("light/") + name, [&](Isa isa, Sum& sum) {
       const HeightMap heights = map();
       sum.add(digest(lit_colors(heights, light, {.threads = 2, .isa = isa})));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Instances with a look of their own: opacity, colour, material, visibility and winding give the
-// picture that the mesh or the frame would have with them, bit for bit, in every shader, with
-// layers and on the reference; and many instances of a small mesh keep no vertices.
+// same bits as on the mesh or the frame, in every shader, with layers and on the reference. Many
+// instances of a small mesh store no vertices.
 #include <algorithm>
 #include <cstdint>
 #include <functional>
@@ -24,7 +24,7 @@ constexpr int kW = 120, kH = 90;
 
 constexpr unsigned kKinds = kColor | kVisible;
 
-/// Two sheets, one before the other.
+/// Two sheets, one in front of the other.
 struct TwoSheets {
   Sheet sheet{9};
   std::vector<Material> materials;
@@ -75,7 +75,7 @@ void for_each_frame(const F& f) {
   }
 }
 
-/// Two ways to say one look.
+/// Two descriptions of one look.
 struct SameLook {
   const char* name;
   bool needs_materials;
@@ -138,7 +138,7 @@ TEST(Instances, HaveTheLookOfTheirFrameMaterialOrMesh) {
 TEST(Instances, WhatIsNotVisibleKeepsItsNumbers) {
   for_each_frame([](Renderer& renderer, const FrameOptions& look, bool materials) {
     TwoSheets scene(materials), far_away(materials);
-    // The other is small enough to be set up at once; both are drawn, then one.
+    // The other sheet is small enough for direct setup. Draws both, then one.
     for (const int hidden : {0, 1}) {
       scene.instances[hidden].visible = false;
       far_away.instances[hidden].object_to_world.m[2][3] = 50;  // behind the eye
@@ -186,7 +186,7 @@ TEST(Instances, ALookOutOfRangeIsRefused) {
          [](InstanceView& i) { i.material = 3; });
   expect("instance 1: its winding is 9",
          [](InstanceView& i) { i.winding = static_cast<Winding>(9); });
-  // A matrix that multiplies rows would bend the mesh.
+  // A matrix for row vectors would distort the mesh.
   expect("instance 1: the last row of its object_to_world must be 0 0 0 1, not 1 ",
          [](InstanceView& i) { i.object_to_world.m[3][0] = 1; });
 }
@@ -269,7 +269,7 @@ TEST(Instances, ManyOfASmallMeshKeepNoVertices) {
     return test::draw(by, {.instances = instances}, camera,
                       {.width = kW, .height = kH, .samples = samples}, kKinds);
   };
-  // The same triangles as one mesh, whose positions are the same numbers: all are powers of two.
+  // One mesh of the same triangles. All positions are powers of two, so they are exact.
   std::vector<Vec3> positions;
   std::vector<std::uint32_t> indices;
   for (const InstanceView& at : cubes.instances) {
@@ -290,7 +290,7 @@ TEST(Instances, ManyOfASmallMeshKeepNoVertices) {
     if (samples == 1) {
       EXPECT_TRUE(same_images(reference, draw(limited, cubes.instances, samples)));
     }
-    // Another matrix rounds otherwise, so that a vertex may snap to the place beside.
+    // Another matrix rounds differently, so a vertex may snap to a neighbouring place.
     const Frame whole = draw(serial, {&one, 1}, samples);
     std::size_t other = 0;
     for (const auto& [x, y] : pixels(kW, kH)) other += reference.ids(x, y) != whole.ids(x, y);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Perspective-correct interpolation: within 1e-5 relative of Σ(aᵢfᵢ/wᵢ) / Σ(aᵢ/wᵢ), evaluated in
-// long double at the snapped positions (for a clipped triangle at its homogeneous ones).
+// Perspective-correct interpolation within 1e-5 relative of Σ(aᵢfᵢ/wᵢ) / Σ(aᵢ/wᵢ), in long double
+// at the snapped positions (at the homogeneous ones of a clipped triangle).
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -33,8 +33,8 @@ void compare(const Frame& f, const Mesh& mesh, const std::vector<ProjectedTriang
     const ProjectedTriangle& t = projected[static_cast<std::size_t>(f.ids(x, y))];
     const auto a = exact_weights(t, kW, kH, x, y);
     const Real sum = a[0] + a[1] + a[2];
-    // Snapping a clipped triangle may cover a sample just outside of it, where the weights
-    // extrapolate; only what lies inside is interpolation.
+    // Snapping a clipped triangle may cover a sample just outside, where the weights extrapolate.
+    // Only samples inside are compared.
     if (std::ranges::any_of(a, [&](Real v) { return v / sum < 0; })) continue;
     const auto first = static_cast<std::size_t>(3 * t.id);
     Real exact[3] = {0, 0, 0};
@@ -59,8 +59,8 @@ void compare(const Frame& f, const Mesh& mesh, const std::vector<ProjectedTriang
   }
 }
 
-// Triangles of every size, |w| from 0.1 to 4, some through the near plane; colours bounded away
-// from 0, so that a relative error means something.
+// Triangles of every size, |w| from 0.1 to 4, some through the near plane. Colours stay away from
+// 0, so that a relative error is meaningful.
 TEST(Interpolation, WithinOneInHundredThousandOfTheExactValue) {
   RenderOptions base({.width = kW, .height = kH, .shader = Shader::flat});
   for (const RenderOptions& way : EveryWay(base, {{.threads = 2}})) {

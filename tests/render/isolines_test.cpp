@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Isolines (docs/scalar_rules.md): as wide in pixels at any distance, on meshes, along lines
-// and along the axes of cylinders, cones and tubes; none where there is but one number.
+// Isolines (docs/scalar_rules.md): their width in pixels does not depend on the distance. They
+// appear on meshes, along lines and along the axes of cylinders, cones and tubes, but not on
+// constant numbers.
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -27,7 +28,7 @@ ScalarMapping lines_at(std::vector<double> levels) {
                        .isoline_px = 3};
 }
 
-/// The square laid back, in perspective.
+/// Views the square in perspective, as if it lay back.
 Camera camera_from_below() {
   return Camera{
       .eye = {0.5, -0.5, 0.4}, .target = {0.5, 0.5, 0}, .fov_rad = 0.8F, .near_plane = 0.01F};
@@ -42,7 +43,7 @@ Frame draw(const GeometryView& geometry, const ScalarMapping& mapping, const Cam
                     kColor | kIds | kAlbedo);
 }
 
-/// How much of a line a row of pixels has.
+/// How much of an isoline a row of pixels has.
 double darkness(const Frame& p, int y) {
   double sum = 0;
   for (int x = 0; x < kSize; ++x)
@@ -93,7 +94,7 @@ TEST(Isolines, CrossLinesAndTheAxesOfCylindersConesAndTubes) {
   check("cylinders, off the middle", cylinders, 57);
   check("cones", CylindersView{.positions = kAxis, .radii = kRadii, .scalars = kAlongAxis}, 50);
   check("tubes", TubesView{.positions = kAxis, .radius = 0.1F, .scalars = kAlongAxis}, 55);
-  // A number's circle is where the ball of its place touches the tube: 0.106 · 0.15 / 0.8 further.
+  // A number's circle is where its place's ball touches the tube: 0.106 · 0.15 / 0.8 farther.
   check("tubes of two radii", TubesView{.positions = kAxis, .radii = kRadii, .scalars = kAlongAxis},
         50, 62);
 }
@@ -114,14 +115,14 @@ TEST(Isolines, AreNotWhereThereIsOneNumber) {
   check("discs", DiscsView{.centers = kAxis, .normals = up, .radius = 0.1F, .scalars = same});
   check("cylinders", CylindersView{.positions = kAxis, .radius = 0.1F, .scalars = same});
   check("tubes", TubesView{.positions = kAxis, .radius = 0.1F, .scalars = same});
-  // Nor on the flat end, all of which has the number of the level.
+  // Nor is there a line on the flat end, which has the number of the level everywhere.
   const std::vector<Vec3> towards{{0.1F, 0.5F, -0.5F}, {0.1F, 0.5F, 0}};
   const std::vector<float> to_level{2, 4.5F};
   check("an end", CylindersView{.positions = towards, .radius = 0.1F, .scalars = to_level});
 }
 
-/// Against differences of what point_on says beside the pixel, in perspective and under a matrix
-/// that shears.
+/// Compares with differences of point_on beside the pixel, in perspective and under a shearing
+/// matrix.
 TEST(Isolines, KnowHowThePlaceOnTheAxisChanges) {
   Camera camera{.eye = {1.5, 2, 3}, .target = {0, 0, 0}, .fov_rad = 0.7F, .near_plane = 0.5F};
   Mat4d to_world = Mat4d::identity();
@@ -168,7 +169,7 @@ TEST(Isolines, KnowHowThePlaceOnTheAxisChanges) {
           const double above = along(0, -kStep, there), below = along(0, kStep, there);
           if (!there) continue;
           const double middle = along(0, 0, there);
-          // Where an end meets a side, and near silhouettes, differences say little.
+          // Where an end meets a side, and near silhouettes, differences are meaningless.
           const double bent =
               std::abs(left + right - 2 * middle) + std::abs(above + below - 2 * middle);
           const double expected = std::hypot(right - left, below - above) / (2 * kStep);

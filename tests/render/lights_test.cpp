@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A frame's own lights: against their formulas in float64 on a sphere, against the fixed light that
-// they can say, and the same bits whatever draws.
+// A frame's own lights: against their formulas in float64 on a sphere, against the equivalent fixed
+// light, and with the same bits on every backend.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -29,14 +29,14 @@ using namespace light_oracle;
 
 constexpr int kSize = 96;
 
-/// A ball of radius 1 about the origin, a quadric, so that its normals are exact.
+/// A ball of radius 1 around the origin; a quadric, so its normals are exact.
 struct Ball {
   std::vector<Vec3> centre{{0, 0, 0}};
   KeptInstances instances{SpheresView{.centers = centre, .radius = 1}};
   std::vector<Material> materials;
 
   Ball() = default;
-  Ball(const Ball&) = delete;  // the views are of this one
+  Ball(const Ball&) = delete;  // the views refer to this object
   Ball& operator=(const Ball&) = delete;
   [[nodiscard]] SceneView view() const { return {instances, materials, {}, {}}; }
 };
@@ -58,7 +58,7 @@ Image<Vec4> draw(const SceneView& scene, const Camera& seen_by, FrameOptions fra
   return color;
 }
 
-/// The same light where both see the ball.
+/// Expects the same light where both see the ball.
 void expect_near(const Image<Vec4>& a, const Image<Vec4>& b) {
   int seen = 0;
   for (const auto& [x, y] : pixels(kSize, kSize)) {
@@ -73,8 +73,8 @@ FrameOptions lit_by(std::vector<Light> lights, Shader shader) {
   return FrameOptions{.shader = shader, .lights = std::move(lights)};
 }
 
-/// An environment of three polynomials of degree 2, whose bands 1 and 2 are weighed: by 1 the light
-/// itself, by what a surface makes of the bands what it gathers or mirrors.
+/// An environment of three polynomials of degree 2 with factors for its bands 1 and 2. Factors of 1
+/// give the light itself, a surface's factors what it gathers or mirrors.
 Vec3d sky(Vec3d w, double first = 1, double second = 1) {
   return {0.5 + first * (0.3 * w.y - 0.1 * w.x), 0.5 + second * 0.7 * w.x * w.z,
           0.4 + first * 0.1 * w.z + second * 0.4 * (w.y * w.y - 1.0 / 3)};
@@ -94,8 +94,8 @@ const Environment& sky_picture() {
   static const Environment once = made_sky();
   return once;
 }
-/// The shares of bands 1 and 2 that facets of a roughness, seen from above, leave: they turn the
-/// light by twice their own angle, weighed by GGX's density of facets and the cosine of the light.
+/// The factors of bands 1 and 2 for facets of a roughness seen from above. Facets turn the light by
+/// twice their own angle; GGX's density and the light's cosine are the weights.
 std::pair<double, double> mirrored_bands(double roughness) {
   const double alpha2 = std::pow(roughness, 4);
   double sum = 0, first = 0, second = 0;
@@ -111,7 +111,7 @@ std::pair<double, double> mirrored_bands(double roughness) {
   return {first / sum, second / sum};
 }
 
-/// The same light of the world, where it moves with the camera.
+/// The same light in world coordinates, if it moves with the camera.
 Light in_world(Light l, const Camera& c) {
   if (!l.of_camera) return l;
   const Mat4d m = world_to_camera(c);
@@ -131,7 +131,7 @@ Light in_world(Light l, const Camera& c) {
   return l;
 }
 
-/// light_oracle::around, and of that environment what a direction gathers, or a surface of a
+/// light_oracle::around; for the environment, what a direction gathers or what a surface of a
 /// roughness mirrors from there.
 std::optional<Vec3d> all_around(const Light& l, Vec3d d, std::optional<double> roughness = {}) {
   if (!std::holds_alternative<EnvironmentLight>(l.kind)) return around(l, d);
@@ -139,7 +139,7 @@ std::optional<Vec3d> all_around(const Light& l, Vec3d d, std::optional<double> r
   return times(wide(l.color) * l.intensity, sky(d, first, second));
 }
 
-/// The colour by `lambert`, and by `phong` if it shines.
+/// The colour by `lambert`, or by `phong` if `shines`.
 Vec3d expected_display(const std::vector<Light>& lights, bool shines, Vec3d p, Vec3d n, Vec3d v) {
   const Vec3d base{0.8, 0.7, 0.6};
   Vec3d sum;
@@ -191,7 +191,7 @@ Vec3d expected_linear(const std::vector<Light>& lights, const Material& m, Vec3d
   return sum;
 }
 
-/// Calls f(x, y, place, to the viewer) where the centre of a pixel sees the ball.
+/// Calls f(x, y, place, direction to the viewer) for pixels whose centres see the ball.
 template <class F>
 void each_pixel(const Camera& c, F&& f) {
   const Mat4d to_camera = world_to_camera(c);
@@ -255,7 +255,7 @@ TEST(Lights, AreTheirFormulasOnASphere) {
         int seen = 0;
         each_pixel(seen_by, [&](int x, int y, Vec3d p, Vec3d v) {
           const Vec4 c = color(x, y);
-          if (c.w == 0) return;  // where rounding decides that the ball ends
+          if (c.w == 0) return;  // rounding may end the ball here
           ++seen;
           Vec3d e = is_material ? expected_linear(placed_lights, matt, p, p, v)
                                 : expected_display(placed_lights, shader == Shader::phong, p, p, v);
@@ -278,7 +278,7 @@ TEST(Lights, SayTheFixedLightOfPhong) {
   expect_near(fixed, said);
 }
 
-/// Meshes, a ball, points with and without normals, and what is translucent.
+/// Meshes, a ball, points with and without normals, and translucent things.
 struct Mixture {
   Mesh knot = shapes::torus_knot(2, 3, 60, 8);
   std::vector<Vec3> places, normals;
@@ -384,7 +384,8 @@ struct BallOnFloor : Ball {
   BallOnFloor() { instances.add(floor.view()); }
 };
 
-/// How far the line from p to the light passes the ball's middle; far where the ball lies behind.
+/// The distance of the line from p to the light from the ball's centre; large if the ball is behind
+/// p.
 double miss(const Light& l, Vec3d p) {
   const Arrived in = arrived(l, p);
   const double along = -dot(p, in.to_light);
@@ -416,7 +417,7 @@ TEST(Lights, CastShadowsAlongTheirRays) {
       int lit = 0;
       for (const auto& [x, y] : pixels(kSize, kSize)) {
         if (f.instances(x, y) != 1) continue;
-        // Three texels are some 0.02 across, and so much again is how far they reach.
+        // Three texels are about 0.02 wide, and their filter reaches as far again.
         const double passes = miss(l, wide(f.positions(x, y)));
         if (passes > 1.06) {
           ++lit;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Materials over the family: textures, alpha masks (whose fragments are tested before the maximum)
-// and several instances. Ids, depth and coverage are the same bits; colours of one instruction set
-// too. And Material::opacity is the frame's for a part of the scene.
+// Materials over the family: textures, alpha masks (fragments are tested before the maximum) and
+// several instances. Ids, depth and coverage have the same bits everywhere, colours on one
+// instruction set. Material::opacity equals the frame's opacity for a part of the scene.
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -22,7 +22,6 @@ Texture noise(Random& r, int size) {
   return texture(size, size, [&](int, int) { return Rgba8{byte(), byte(), byte(), byte()}; });
 }
 
-/// The options that both suites draw with.
 FrameOptions frame_of(Shader shader, float opacity) {
   return {.width = 131,
           .height = 99,
@@ -31,7 +30,7 @@ FrameOptions frame_of(Shader shader, float opacity) {
           .opacity = opacity};
 }
 
-// A sphere cut out by a mask around an opaque knot, before a wall of boxes.
+// A sphere with holes by a mask, around an opaque knot and in front of a wall of boxes.
 Scene masked_scene(std::uint64_t seed) {
   Random r(seed);
   Scene scene;
@@ -73,7 +72,7 @@ TEST_P(Materials, EqualOverTheFamily) {
     }
     const Frame serial =
         ways.same([&](Painter& painter) { return draw(painter, fitted.view, camera); }, kCountsToo);
-    // The mask is seen through: some of what it covers belongs to what lies behind it.
+    // The mask has holes: some pixels inside of it show what is behind.
     const auto sphere = static_cast<std::int64_t>(scene.meshes[0].triangle_count());
     int kept = 0, seen_through = 0;
     for (const std::int64_t id : serial.ids.pixels()) {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The memory limit: a frame's scratch stays at or below it for every point of the coverage ×
-// visibility table, on scenes that are far larger, and the picture is the one without a limit. A
-// limit that cannot be honoured is refused with the least one that can. The memory that `sorted`
-// takes for a fragment is tested, too.
+// The memory limit: a frame's scratch stays within it for every point of the coverage × visibility
+// table, on much larger scenes, and the picture does not change. A limit that is too low is refused
+// with the least possible one. Also tests the memory of `sorted` per fragment.
 #include <algorithm>
 #include <cstdint>
 #include <string>
@@ -23,7 +22,7 @@
 namespace rastrum::test::memory_test {
 namespace {
 
-/// A mesh in a picture, which together take many times `limit`.
+/// A mesh and a picture that together take many times `limit`.
 struct Load {
   std::string name;
   Mesh mesh;
@@ -31,7 +30,7 @@ struct Load {
   std::vector<std::uint64_t> limits;
 };
 
-/// `count` triangles that fill the picture, at depths in no order.
+/// `count` triangles that fill the picture, at depths in random order.
 Mesh layers(int count) {
   Mesh mesh;
   for (int i = 0; i < count; ++i) {
@@ -60,7 +59,7 @@ Camera straight_on() {
   return Camera{.eye = {0, 0, 3}, .target = {0, 0, 0}};
 }
 
-/// Every image but the overdraw, which turns hierarchical Z off.
+/// Every image but overdraw, which turns hierarchical Z off.
 constexpr unsigned kKinds = kColor8 | kVisible;
 Frame picture(Painter& renderer, const SceneView& scene) {
   return draw(renderer, scene, straight_on(), kKinds);
@@ -85,7 +84,7 @@ TEST_P(MemoryLimit, IsKeptAndChangesNoPixel) {
         RenderOptions o = options(GetParam(), load.width, load.height, threads);
         o.memory_limit = limit;
         Painter renderer(o);
-        // A second frame has what the first one kept.
+        // The second frame starts with what the first one kept.
         for (int frame = 0; frame < 2; ++frame) {
           const Frame limited = picture(renderer, scene.view());
           ASSERT_TRUE(same_images(limited, expected)) << load.name << ", " << limit;
@@ -97,7 +96,7 @@ TEST_P(MemoryLimit, IsKeptAndChangesNoPixel) {
   }
 }
 
-/// The number in "… is less than the N that this frame needs at least"; 0: it says none.
+/// The number N in "… is less than the N that this frame needs at least"; 0 if there is none.
 template <class F>
 std::uint64_t least_for(const F& frame_of_1000_bytes) {
   const std::string said = refusal_of(frame_of_1000_bytes, Errc::out_of_memory);
@@ -125,8 +124,8 @@ TEST_P(MemoryLimit, SaysTheLeastOneWhereItIsTooSmall) {
 INSTANTIATE_TEST_SUITE_P(Points, MemoryLimit, testing::ValuesIn(table_points()),
                          [](const auto& p) { return test_name(p.param); });
 
-/// A limit that is somewhat more than the least, and the least, of one renderer's frames with
-/// several samples, opaque and in layers.
+/// Tests the least limit and a slightly larger one, for one renderer's frames with several samples,
+/// opaque and in layers.
 TEST(MemoryLimitOfSamples, IsKeptAndChangesNoPixel) {
   struct Named {
     const char* name;
@@ -158,7 +157,7 @@ TEST(MemoryLimitOfSamples, IsKeptAndChangesNoPixel) {
               EXPECT_LE(got.stats.peak_bytes, limit) << what;
               EXPECT_TRUE(same_images(got, want)) << what;
             } catch (const Error& e) {
-              // All memory of a bin of 64² px is needed at once.
+              // A bin of 64² px needs all of its memory at once.
               EXPECT_EQ(e.code(), Errc::out_of_memory) << what;
             }
           }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Numbers in 32 bits and distances with another number where nothing is (Targets): what the wide
-// ones hold, in every way a block is resolved.
+// 32-bit numbers, and distances with another empty value (Targets), equal the wide ones, in every
+// way in which a block is resolved.
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -18,7 +18,7 @@
 namespace rastrum::test::narrow_outputs_test {
 namespace {
 
-constexpr int kW = 75, kH = 61;  // blocks that the edge cuts
+constexpr int kW = 75, kH = 61;  // the edge cuts blocks
 
 /// Two meshes and spheres, so that ids, instances and primitives differ.
 Scene subject() {
@@ -32,7 +32,7 @@ void expect_same(const Fitted& scene, const FrameOptions& frame, const RendererO
   Renderer renderer(options);
   const Frame wide = draw(renderer, scene.view, scene.camera, frame,
                           kColor8 | kIds | kInstances | kPrimitives | kViewDepth | kDistance);
-  // One by one: none may need another.
+  // One by one, because none may depend on another.
   const auto narrow = [&](ImageView<std::int32_t> Targets::*target) {
     Image<std::int32_t> image(kW, kH);
     Targets targets;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A terrain's surroundings and the things that stand on it, under the same lights: checked by the
-// rays of its pictures and against the scene's own picture, with the same bits whatever draws.
+// A terrain's surroundings and the things on it, under the same lights: checked by the rays of its
+// pictures and against the scene's own picture, with the same bits on every backend.
 #include <algorithm>
 #include <cmath>
 #include <span>
@@ -51,7 +51,7 @@ struct Sky {
   Image<Rgba8> before;
 };
 
-/// The direction of a pixel by the rules of docs/terrain_rules.md.
+/// The direction of a pixel's ray by docs/terrain_rules.md.
 Vec3d direction_of(const terrain::TerrainOptions& o, const terrain::TerrainCamera& c, int x,
                    int y) {
   const double dx = x + 0.5 - o.width / 2.0, dy = y + 0.5 - o.height / 2.0;

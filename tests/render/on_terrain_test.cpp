@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Meshes and sprites on a terrain: every pixel is that of the nearer of two pictures drawn apart
-// and composed here, translucent layers lie over the terrain, and what stands on a cell is seen
-// where the cell is.
+// Meshes and sprites on a terrain. Every pixel is that of the nearer of two separate pictures,
+// which the test composes; translucent layers lie over the terrain; and a thing on a cell appears
+// at the cell.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -74,7 +74,6 @@ struct Picture : Frame {
   }
 };
 
-/// The scene without the terrain.
 Frame alone(const Scene& scene, const TerrainLook& options, const TerrainCamera& camera,
             const RenderOptions& how) {
   return draw(how, SceneBinding(scene).view(),
@@ -87,7 +86,7 @@ struct View {
   TerrainLook options;
   TerrainCamera camera;
 };
-/// Over the hills from every side: planar, rolled, looking down, classic; both methods.
+/// Views of the hills from every side: planar, rolled, looking down, classic; by both methods.
 std::vector<View> views() {
   const TerrainLook plain = terrain_options();
   const TerrainCamera south{128, 240, 75, 0, 40, 0};
@@ -118,7 +117,7 @@ std::vector<View> views() {
 
 TEST(OnTerrain, ABoxBehindAHillIsSeenWhereItIsNearer) {
   const Terrain ground = hills();
-  // Its foot lies behind the crest that runs through y = 180.
+  // Its foot is behind the crest along y = 180.
   const Scene box = placed(shapes::boxes(1, 1), at(100, 30, 120, 50));
   for (const View& v : views()) {
     SCOPED_TRACE(v.name);
@@ -130,7 +129,7 @@ TEST(OnTerrain, ABoxBehindAHillIsSeenWhereItIsNearer) {
     std::size_t shown = 0, hidden = 0, wrong = 0;
     for (const auto& [x, y] : pixels(kWidth, kHeight)) {
       const float d = alone.depth(x, y);
-      const auto other = [](float depth) {  // of the terrain and of the scene, both ways
+      const auto other = [](float depth) {  // converts between the depths of terrain and scene
         return static_cast<float>(SceneOnTerrain::kNear / static_cast<double>(depth));
       };
       const bool wins = d > other(before.depth(x, y));
@@ -182,7 +181,7 @@ TEST(OnTerrain, TranslucentSurfacesLieOverTheTerrain) {
 }
 
 TEST(OnTerrain, SpritesFaceTheCameraAndBlendInLinearLight) {
-  // Left half green at half alpha, right half opaque but for a clear top row of texels.
+  // The left half is green at half alpha, the right half opaque except for a clear top row.
   Image<Rgba8> picture(8, 16);
   for (const auto& [x, y] : pixels(8, 16))
     picture(x, y) =
@@ -197,7 +196,7 @@ TEST(OnTerrain, SpritesFaceTheCameraAndBlendInLinearLight) {
   scene.instances[0].object_to_world = at(128, 0, 128, size);
   for (const double angle : {0.0, 0.9, 2.5, -1.57}) {
     SCOPED_TRACE(angle);
-    // Around the sprite, which is always in the middle.
+    // The camera circles the sprite, which stays in the middle.
     const TerrainCamera camera{
         128 + away * std::sin(angle), 128 + away * std::cos(angle), 30, angle, 50, 0};
     const Picture before(flat, options, camera);
@@ -221,14 +220,14 @@ TEST(OnTerrain, SpritesFaceTheCameraAndBlendInLinearLight) {
         ++other;
     }
     EXPECT_EQ(other, 0);
-    // 12 × 24 cells, of which the lower half shows, at 2 px a cell: two halves of 12 × 24 px.
+    // 12 × 24 cells at 2 px a cell, with only the lower half visible: two halves of 12 × 24 px.
     EXPECT_NEAR(half, 12 * 24, 30);
     EXPECT_NEAR(whole, 12 * 24, 30);
   }
 }
 
 TEST(OnTerrain, WhatStandsOnACellIsSeenWhereTheCellIs) {
-  // A flat map at 5 with one red cell; on its middle a thin pole, of two blades.
+  // A flat map at height 5 with one red cell, and a thin pole of two blades on its middle.
   Mesh pole{.positions = {{-0.3F, 0, 0},
                           {0.3F, 0, 0},
                           {0.3F, 12, 0},
@@ -253,7 +252,7 @@ TEST(OnTerrain, WhatStandsOnACellIsSeenWhereTheCellIs) {
         TerrainLook options = terrain_options();
         options.classic = classic;
         options.step = classic ? options.step : 0.25;
-        // Classic's steps are 4 rows long here: the pole stands on its slice 27.
+        // Classic's steps are 4 rows long here; the pole stands on its slice 27.
         const double away = classic ? 1 + 27 + 0.005 * 27 * 28 / 2 : 30, aside = 6;
         const TerrainCamera camera{100.5 + away * std::sin(angle) + aside * std::cos(angle),
                                    130.5 + away * std::cos(angle) - aside * std::sin(angle),
@@ -266,8 +265,8 @@ TEST(OnTerrain, WhatStandsOnACellIsSeenWhereTheCellIs) {
         both.add(one, options, render_options(Shader::flat));
         const Frame alone =
             on_terrain_test::alone(one, options, before.camera, render_options(Shader::flat));
-        // The pole's lowest pixel along the picture's own vertical, and that of it on the ground,
-        // which hides what of the blades is behind the cell.
+        // The pole's lowest pixel along the picture's vertical, and its lowest visible one: the
+        // ground hides the part of the blades behind the cell.
         double lowest = -1e9, lowest_seen = -1e9;
         int px = -1, py = -1;
         for (const auto& [x, y] : pixels(kWidth, kHeight)) {
@@ -314,7 +313,7 @@ TEST(OnTerrain, IsTheSameOnEveryDeviceByEveryMethodAndInLittleMemory) {
       o.threads = 8;
     };
     for (const family::AxisInfo& rasterizer : family::rasterizer_axis()) {
-      // Layers want tiles of a thread's own.
+      // Layers need threads that own tiles.
       if (rasterizer.name == "reference") continue;
       const bool owns = rasterizer.name == "grouped" || rasterizer.name == "tiled";
       if (opacity == 1 || owns) add(rasterizer.name, plain.visibility);
@@ -334,7 +333,7 @@ TEST(OnTerrain, IsTheSameOnEveryDeviceByEveryMethodAndInLittleMemory) {
   }
 }
 
-/// Discards whatever asks for the test.
+/// Discards all fragments.
 struct Nothing final : raster::FragmentTest {
   std::uint64_t test(const raster::FrameGeometry&, const raster::Piece&, const raster::Block&,
                      const raster::ShadingPoints*) const noexcept override {
@@ -395,12 +394,12 @@ TEST(OverPicture, KeepsThePictureWhereDepthsAreEqualAndWhereNothingIs) {
   const Frame first =
       draw(render_options(Shader::flat), boxes.view, boxes.camera, kColor8 | kDepth);
   Frame again = first;
-  // The same surfaces in another colour: all ties.
+  // The same surfaces in another colour: every fragment is a tie.
   Targets targets = again.targets();
   const Pass over{.over = true};
   Painter(render_options(Shader::normal)).render(boxes.view, boxes.camera, targets, over);
   EXPECT_TRUE(same_images(again, first, kColor8));
-  // Half of the picture is moved away: there the surfaces win, over a picture of floats as well.
+  // Half of the picture is moved away. There the surfaces win, also over a picture of floats.
   for (const auto& [x, y] : pixels(kWidth / 2, kHeight))
     again.depth(x, y) = std::nextafter(again.depth(x, y), 0.0F);
   Image<Vec4> floats(kWidth, kHeight);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Several threads in one Renderer, TerrainRenderer or SceneOnTerrain: each call is a frame of its
-// own, and its picture that of a renderer that nobody else uses.
+// Several threads share a Renderer, TerrainRenderer or SceneOnTerrain: each call is a frame of its
+// own, with the picture of an unshared renderer.
 #include <cmath>
 #include <latch>
 #include <thread>
@@ -36,7 +36,7 @@ void from_all_callers(const F& f) {
 }
 
 TEST(OneRenderer, DrawsForSeveralThreads) {
-  // The scenes have different sizes, so that scratch grows; the last is translucent.
+  // The scenes differ in size, so that scratch grows; the last one is translucent.
   std::vector<Scene> scenes{single(shapes::sphere(8, 16)), single(shapes::teapot(8)),
                             single(shapes::soup(3000, 0.02F, 0.4F)), single(shapes::boxes(4))};
   scenes.back().meshes[0].colors.values.assign(scenes.back().meshes[0].positions.size(),
@@ -71,7 +71,7 @@ terrain::Terrain hills(double steepness) {
 
 TerrainLook terrain_options() {
   TerrainLook o({.width = kSide, .height = kSide, .distance = 200}, {.threads = 2});
-  o.filter = terrain::MapFilter::mip;  // each map has a pyramid, which takes a while to make
+  o.filter = terrain::MapFilter::mip;  // each map has a pyramid, which takes time to make
   return o;
 }
 constexpr terrain::TerrainCamera kCamera{.x = 50, .y = 90, .altitude = 80, .horizon_px = 30};
@@ -82,7 +82,7 @@ struct Ground : Frame {
 };
 
 TEST(OneTerrainRenderer, DrawsForSeveralThreads) {
-  // Two maps, each of which takes the place of the other's pyramid.
+  // Two maps, whose pyramids replace each other.
   const terrain::Terrain maps[] = {hills(1), hills(3)};
   Ground alone[2];
   for (int i = 0; i < 2; ++i)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The images of the surface at a pixel (Targets, docs/outputs.md): each against a float64
-// oracle, and the same bits whatever draws.
+// The images of the surface at a pixel (Targets, docs/outputs.md): against a float64 oracle, and
+// with the same bits on every backend.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -36,7 +36,7 @@ Frame draw(const SceneView& scene, const Camera& camera, const RenderOptions& o,
   return test::draw(o, scene, camera, kinds);
 }
 
-/// How many pixels were checked for what, so that a test that looks at nothing is noticed.
+/// How many pixels were checked for what, so that a test that checks nothing fails.
 struct Seen {
   int pixels = 0, faces = 0, smooth = 0, depths = 0;
 };
@@ -52,7 +52,7 @@ void check_pixel(const Frame& s, const SceneView& scene, const Camera& camera,
   const MeshView& mesh = *scene.instances[instance].mesh();
   const auto a = exact_weights(projected[id], kW, kH, x, y);
   const Real sum = a[0] + a[1] + a[2];
-  // Snapping may cover a sample just outside of a clipped triangle, where weights are cut.
+  // Snapping may cover a sample just outside of a clipped triangle, where weights are clamped.
   if (std::ranges::any_of(a, [&](Real v) { return !(v / sum >= 0); })) return;
   ++seen.pixels;
   ASSERT_NEAR(s.barycentrics(x, y).x, static_cast<double>(a[1] / sum), 1e-5);
@@ -71,8 +71,8 @@ void check_pixel(const Frame& s, const SceneView& scene, const Camera& camera,
   // Normals against the cross product in the world, turned to the eye.
   const Mat4d view = world_to_camera(camera);
   const auto axis = [&](int i) { return Point3{view.m[i][0], view.m[i][1], view.m[i][2]}; };
-  // Along the ray of the pixel's centre, by the camera's angle; the snapped triangle may be seen a
-  // little beside it.
+  // On the ray of the pixel's centre by the camera's angle. The snapped triangle may be a little
+  // beside it.
   const Real half = std::tan(Real(camera.fov_rad) / 2), smaller = std::min(kW, kH);
   const Real across = (x + Real(0.5) - Real(kW) / 2) * 2 * half / smaller;
   const Real down = (y + Real(0.5) - Real(kH) / 2) * 2 * half / smaller;
@@ -93,7 +93,7 @@ void check_pixel(const Frame& s, const SceneView& scene, const Camera& camera,
     if (!mesh.normals.values.empty()) ++seen.smooth;
   }
 
-  // Along the axis, as far as a float32 depth tells it: its plane is rounded once a piece.
+  // Along the axis, at the precision of a float32 depth: its plane is rounded once per piece.
   const Real z = -(dot(axis(2), p) + view.m[2][3]);
   ASSERT_EQ(s.view_depth(x, y), static_cast<float>(view_distance(camera, s.depth(x, y))));
   if (projected[id].fate != Fate::whole || !(s.depth(x, y) > 0) || camera.orthographic) return;
@@ -107,7 +107,7 @@ void check_pixel(const Frame& s, const SceneView& scene, const Camera& camera,
     const Real dx = v[c].x_fx8 - v[(c + 1) % 3].x_fx8, dy = v[c].y_fx8 - v[(c + 1) % 3].y_fx8;
     longest = std::max(longest, dx * dx + dy * dy);
   }
-  // A sliver's plane is as steep as its corners' last bits say.
+  // The slope of a sliver's plane depends on the last bits of its corners.
   if (std::abs(twice_area(projected[id].snapped)) < Real(0.05) * longest) return;
   ++seen.depths;
   ASSERT_NEAR(s.view_depth(x, y), static_cast<double>(z), 1e-4 * static_cast<double>(z));
@@ -148,9 +148,9 @@ TEST(Outputs, AreWhatAnOracleSaysOfTheVisibleTriangle) {
   EXPECT_GT(seen.depths, 12 * scenes);
 }
 
-// Layers and samples too: of the surface of the largest key, wherever its key came from.
+// Layers and samples too: of the surface with the largest key, wherever its key came from.
 TEST(Outputs, AreTheSameBitsWhateverDraws) {
-  // Few are each kind of scene, with half of the four ways to draw it.
+  // Few scenes of each kind, with half of the four ways to draw.
   const auto seeds = static_cast<std::uint64_t>(share_of(24, kSceneKinds));
   const bool half = test_share() < 100;
   for (const int samples : {1, 4})
@@ -170,7 +170,7 @@ TEST(Outputs, AreTheSameBitsWhateverDraws) {
       }
 }
 
-/// Two triangles before each other, the nearer one in the left half.
+/// Two triangles, the nearer one in the left half.
 struct Two {
   std::vector<Vec3> near{{-2, -2, 1}, {0, -2, 1}, {-1, 4, 1}},
       far{{-4, -4, 0}, {4, -4, 0}, {0, 8, 0}};
@@ -179,7 +179,8 @@ struct Two {
   [[nodiscard]] SceneView scene() const { return {.instances = instances}; }
 };
 
-// A shader that has found them leaves them to the image; alone they are found again.
+// A shader that computes normals passes them to the image; without one they are computed
+// separately.
 TEST(Outputs, NormalsAreTheSameWhateverShades) {
   for (const int samples : {1, 4})
     for (std::uint64_t seed = 0; seed < 24; ++seed) {
@@ -198,7 +199,7 @@ TEST(Outputs, NormalsAreTheSameWhateverShades) {
     }
 }
 
-// Blocks that a lit mesh and a sphere share: each is found by its own shader.
+// Blocks with a lit mesh and a sphere: each shader finds its own normals.
 TEST(Outputs, NormalsBesideSpheresAreTheSameWhateverShades) {
   Two two;
   const std::vector<Vec3> centres{{0.3F, 0.2F, 0.9F}, {-0.6F, -0.4F, 1.1F}};
@@ -210,8 +211,8 @@ TEST(Outputs, NormalsBesideSpheresAreTheSameWhateverShades) {
   EXPECT_GT(std::ranges::count(alone.normals.pixels(), Vec3{0, 0, 1}), 100);
 }
 
-// The largest key of several samples need not be of a triangle that covers the centre: normals are
-// not drawn out beyond its corners, however small it is.
+// With several samples, the largest key may belong to a triangle that misses the centre. Its normal
+// must not extrapolate beyond its corners, however small it is.
 TEST(Outputs, NormalsOfSeveralSamplesLieBetweenThoseOfTheCorners) {
   const Mesh ball = shapes::sphere(100, 200);  // triangles of a third of a pixel
   std::vector<Vec3> corners, of_corners;
@@ -227,7 +228,7 @@ TEST(Outputs, NormalsOfSeveralSamplesLieBetweenThoseOfTheCorners) {
   for (const Vec3 n : f.normals.pixels()) {
     if (n == Vec3{}) continue;
     ++seen;
-    // Between the three axes, or turned to the viewer and between their opposites.
+    // Between the three axes or, turned to the viewer, between their opposites.
     const auto [least, most] = std::minmax({n.x, n.y, n.z});
     ASSERT_TRUE(least >= 0 || most <= 0) << n.x << ' ' << n.y << ' ' << n.z;
   }
@@ -334,8 +335,8 @@ TEST(Outputs, LinearLightIsTheColourBeforeItsTransferAndChangesNoOther) {
     }
 }
 
-/// Pictures that no cache holds go past it, in lines that begin anywhere: the pixels are those of
-/// the scalar form, which knows nothing of it, and nothing is written beside them.
+/// Pictures larger than any cache are written past it, in lines that begin anywhere. The pixels
+/// must equal the scalar form's, which writes normally, and nothing beside them may be written.
 TEST(Outputs, LargePicturesAreTheSameWhereverTheyLie) {
   constexpr int kSide = 2560, kPitch = kSide + 5, kFirst = 3;
   constexpr Rgba8 kElse{7, 7, 7, 7};
@@ -393,7 +394,7 @@ TEST(Outputs, RefuseWhatTheyAreNotFor) {
   expect_refused("positions target is of a scene", Errc::unsupported, [&] {
     renderer.draw({&own, 1}, options(), {.positions = positions});
   });
-  // Targets that need no scene are drawn.
+  // Targets that need no scene are still drawn.
   Image<std::int64_t> instances(kW, kH), primitives(kW, kH);
   Image<Vec2> barycentrics(kW, kH);
   renderer.draw({&own, 1}, options(),
@@ -401,7 +402,7 @@ TEST(Outputs, RefuseWhatTheyAreNotFor) {
   EXPECT_EQ(instances(0, kH - 1), 0);
   EXPECT_EQ(primitives(0, kH - 1), 0);
   EXPECT_NEAR(barycentrics(0, kH - 1).x, 0.5 / kW / 2, 1e-5);
-  // Depth does not tell distances of this one.
+  // This camera's depths do not give distances.
   Camera tilted = two.camera;
   tilted.matrix = world_to_clip(two.camera, kW, kH);
   tilted.matrix->m[2][0] += 0.1;

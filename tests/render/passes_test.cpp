@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A picture drawn in several passes is the picture drawn at once, and a fragment test is applied in
-// every pass that a method makes over the fragments: for the serial device and every point of the
-// coverage × visibility table. cuda_rasterizer_test has the passes of a device.
+// A picture in several passes equals the picture in one, and a fragment test applies in every pass
+// of a method over the fragments: for the serial device and every point of the coverage ×
+// visibility table. cuda_rasterizer_test has a device's passes.
 #include <cstdint>
 
 #include <gtest/gtest.h>
@@ -47,8 +47,8 @@ TEST(PassesOfSerial, EqualOneDraw) {
     EXPECT_TRUE(passes_equal_one_draw(renderer, shape));
 }
 
-// The greys of depth are those of all passes together, with and without an image of depths that is
-// kept, and whatever the frames before have left in the renderer's own.
+// The greys of depth cover all passes together, with and without a kept image of depths, whatever
+// earlier frames left in the renderer's own.
 TEST(PassesOfDepth, AreTheGreysOfOneDraw) {
   const Mesh meshes[] = {shapes::sphere(24, 48), shapes::boxes(2)};
   KeptInstances instances{meshes[0].view(), meshes[1].view()};
@@ -78,7 +78,7 @@ TEST(PassesOfDepth, AreTheGreysOfOneDraw) {
     }
 }
 
-// With layers there are no keys to go on from, but ids count from the first one, too.
+// Layers have no keys to continue from, but ids count from the first one too.
 TEST(PassesOfLayers, CountIdsFromTheFirst) {
   const Fitted scene(shapes::soup(300, 0.1F, 0.5F));
   for (const Device device : {Device::serial, Device::threads}) {
@@ -120,7 +120,7 @@ TEST_P(Passes, AllTestFragments) {
       return true;
     }
   };
-  // The second draw is not tested, though the frame has a test.
+  // The second draw is not tested, although the frame has a test.
   raster::Draw draws[] = {soup.draw(kTested), soup.draw(0)};
   draws[1].indices = draws[1].indices.subspan(0, 300);
   draws[1].primitive_count = 100;

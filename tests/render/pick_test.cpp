@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Picks what is under a pixel in one call: the same bits as the images of the whole frame.
+// Picks what is under a pixel: the same bits as the images of the whole frame.
 #include <cstring>
 #include <string>
 #include <vector>
@@ -44,7 +44,7 @@ TEST(Pick, IsWhatTheImagesOfTheWholeFrameHold) {
       }
       ++seen;
       ASSERT_NO_FATAL_FAILURE(expect_picked(*p, s, x, y));
-      // Its parts say the same.
+      // locate() gives the same.
       const Located at = locate(scene, p->id);
       ASSERT_EQ(at.instance, p->instance);
       ASSERT_EQ(at.primitive, p->primitive);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Queries of points and lines beside their picture: the images of the surface at a pixel, picking
-// under a pointer, fits, and refusals.
+// Points and lines in the surface images, picking, fits, and refusals.
 #include <limits>
 #include <string>
 #include <vector>
@@ -25,7 +24,7 @@ FrameOptions frame() {
   return FrameOptions{.width = kWidth, .height = kHeight, .shader = Shader::flat};
 }
 
-/// Every image says what `pick` says, and all ways to draw say the same.
+/// Every image agrees with `pick`, in all ways to draw.
 TEST(PointsAndLinesAccess, PickIsWhatTheImagesHold) {
   int seen = 0;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {

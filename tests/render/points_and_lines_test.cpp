@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Points and lines of a scene: what is seen is what the brute-force oracle says, every way to draw
-// them is the same to the bit, and they look as their colours, normals and materials say.
+// Points and lines of a scene: the visible ones are the brute-force oracle's, every way to draw
+// them gives the same bits, and colours, normals and materials apply.
 #include <cmath>
 #include <cstring>
 #include <vector>
@@ -130,7 +130,7 @@ TEST(PointsAndLines, KernelsMakeTheSameFragments) {
   EXPECT_GT(slow, 1000U);
 }
 
-/// A scene of an instance, seen from +z, a unit 50 px.
+/// A scene of one instance, seen from +z at 50 px a unit.
 struct Flat {
   std::vector<InstanceView> instances;
   std::vector<Material> materials;
@@ -165,10 +165,10 @@ TEST(PointsAndLines, ShowTheirColours) {
   const Frame p = Flat(line).draw();
   expect_near(middle(p), {0.5F, 0, 0.5F, 1}, 0.01F);
   expect_near(p.color(kWidth / 2 - 49, kHeight / 2), kRed, 0.02F);
-  // Without normals the lit shaders show colours, too.
+  // Without normals lit shaders show plain colours too.
   EXPECT_TRUE(same_images(Flat(line).draw(frame_of(Shader::phong)), p, kColor));
   EXPECT_TRUE(same_images(Flat(line).draw(frame_of(Shader::normal)), p, kColor));
-  // An instance's colour stands for them; none is the plain one.
+  // An instance's colour replaces theirs; without one they have the plain one.
   Flat painted(line);
   painted.instances[0].color = kBlue;
   expect_near(middle(painted.draw()), kBlue);
@@ -187,7 +187,7 @@ TEST(PointsAndLines, AreLitByTheNormalsOfPoints) {
   // 0.1 + 0.8 n · l, l = (0.4, 0.6, 1) normalized.
   const float share = 0.1F + 0.8F * 0.6F / std::sqrt(0.16F + 0.36F + 1);
   expect_near(lit, {0.8F * share, 0.7F * share, 0.6F * share, 1});
-  // A normal without a direction lights nothing.
+  // A zero normal means no lighting.
   point.normals = none;
   expect_near(middle(Flat(point).draw(frame_of(Shader::phong))), plain);
 }
@@ -199,7 +199,7 @@ TEST(PointsAndLines, HeedMaterials) {
   Flat s(line);
   s.materials.resize(2);
   s.materials[1].base_color = {0.5F, 0.25F, 1, 1};
-  // Written with the sRGB transfer.
+  // Converted to sRGB.
   expect_near(middle(s.draw(frame_of(Shader::material))), {0.735357F, 0.537099F, 1, 1}, 1e-4F);
   const auto left = [](const Frame& p) { return p.color(kWidth / 2 - 25, kHeight / 2); };
   s.materials[1].alpha_mode = AlphaMode::blend;
@@ -212,7 +212,7 @@ TEST(PointsAndLines, HeedMaterials) {
   const Frame masked = s.draw();
   EXPECT_EQ(masked.ids(kWidth / 2 - 25, kHeight / 2), -1);
   EXPECT_EQ(masked.ids(kWidth / 2 + 25, kHeight / 2), 0);
-  // The same of points, each as a whole.
+  // The same for points, each as a whole.
   PointsView points{.positions = at, .colors = fading, .point_size = 5, .material = 1};
   s.instances[0].geometry = points;
   const Frame dots = s.draw();
@@ -220,7 +220,8 @@ TEST(PointsAndLines, HeedMaterials) {
   EXPECT_EQ(dots.ids(kWidth / 2 + 50, kHeight / 2), 1);
 }
 
-/// Two translucent points over each other and over a triangle, as the colours are blended by hand.
+/// Two translucent points over each other and over a triangle, compared with colours blended by
+/// hand.
 TEST(PointsAndLines, BlendInLayers) {
   const std::vector<Vec3> near_far{{0.01F, 0, 1}, {0.01F, 0, 0.5F}};
   const std::vector<Vec4> colors{{1, 0, 0, 0.5F}, {0, 1, 0, 0.25F}};
@@ -232,7 +233,7 @@ TEST(PointsAndLines, BlendInLayers) {
   behind.color = kBlue;
   s.instances.push_back(behind);
   expect_near(middle(s.draw()), {0.5F, 0.125F, 0.375F, 1});
-  // One pixel, and so fragments.
+  // One pixel, so they are drawn as fragments.
   points.point_size = 1;
   s.instances[0].geometry = points;
   expect_near(middle(s.draw()), {0.5F, 0.125F, 0.375F, 1});

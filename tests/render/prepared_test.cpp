@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Prepared meshes draw the same bits as they do unprepared.
+// Prepared meshes give the same bits as unprepared ones.
 #include <rastrum/prepared_mesh.hpp>
 
 #include <cmath>
@@ -42,7 +42,7 @@ constexpr const char* kOutside = "triangles of clusters outside";
 constexpr const char* kAway = "triangles of clusters that face away";
 constexpr const char* kHidden = "triangles of hidden clusters";
 
-/// Sums of the frames' counters, so that a test can say that something was left out.
+/// Sums of the frames' counters, which show that something was left out.
 class LeftOut {
  public:
   void add(const FrameStats& stats) {
@@ -57,7 +57,7 @@ class LeftOut {
   std::map<std::string, std::uint64_t> sum_;
 };
 
-/// A scene whose meshes have small clusters, however small they are.
+/// A scene whose meshes have small clusters even if the meshes are small.
 class SmallClusters {
  public:
   SmallClusters(const SceneView& scene, std::uint32_t triangles)
@@ -84,7 +84,7 @@ class SmallClusters {
   SceneView view_;
 };
 
-/// Layers of grids over each other, in tiles that face either way, some behind all.
+/// Layers of grids in front of each other, in tiles of either facing, some behind all others.
 Scene layers(Random& r) {
   Mesh mesh;
   const int cells = r.integer(2, 10), count = r.integer(2, 6);
@@ -132,7 +132,7 @@ Camera any_camera(Random& r) {
   return c;
 }
 
-/// One scene, some frames along a way, drawn by both.
+/// Draws frames of one scene along a path, plain and prepared.
 void compare(std::uint64_t seed, LeftOut& left_out) {
   Random r(seed * 7919 + 1);
   FrameOptions o{.width = r.integer(8, 150), .height = r.integer(8, 120)};
@@ -165,7 +165,6 @@ TEST(Prepared, DrawsTheBitsOfGeneratedScenes) {
   for (const char* const why : {kOutside, kAway, kHidden}) EXPECT_GT(left_out[why], n) << why;
 }
 
-/// By `options`, of each camera.
 void compare_along(const SceneView& plain_scene, const SceneView& prepared_scene,
                    std::span<const Camera> cameras, const FrameOptions& o, LeftOut& left_out) {
   Renderer plain, prepared;
@@ -181,7 +180,6 @@ FrameOptions of_size(int width, int height, Cull cull = Cull::none, int samples 
   return FrameOptions{.width = width, .height = height, .cull = cull, .samples = samples};
 }
 
-/// A mesh as it is, and prepared.
 struct Both {
   PreparedMesh prepared;
   OneInstance plain, own;
@@ -213,11 +211,11 @@ TEST(Prepared, LeavesOutWhatIsHiddenOutsideAndFacingAway) {
   EXPECT_GT(left_out(8, of_size(200, 160, Cull::back))[kAway], drawn / 10);
 }
 
-// A sheet that faces away, of triangles so small that snapping may turn them over: none is left
-// out for how it faces.
+// A sheet that faces away, with triangles so small that snapping may flip them: none may be left
+// out for its facing.
 TEST(Prepared, TinyTrianglesMayFaceEitherWay) {
   Random r(5);
-  // Long and flat, so that one that is turned over may still hold a sample.
+  // Long and flat, so that a flipped one may still cover a sample.
   constexpr int kColumns = 40, kRows = 400;
   Mesh sheet;
   for (int y = 0; y <= kRows; ++y)
@@ -233,7 +231,7 @@ TEST(Prepared, TinyTrianglesMayFaceEitherWay) {
   LeftOut left_out;
   for (int i = 0; i < 40 && !testing::Test::HasFailure(); ++i) {
     Camera c;
-    // From 1 to 3 px across, a 400th of that a triangle.
+    // From 1 to 3 px across; a triangle is a 400th of that.
     c.eye = {r.real(-0.2, 0.2), r.real(-0.2, 0.2), 20.8 / (1 + 0.05 * i)};
     const FrameOptions o = of_size(24, 24, Cull::back);
     const Frame got = draw(own, both.own.view(), c, o);
@@ -241,7 +239,7 @@ TEST(Prepared, TinyTrianglesMayFaceEitherWay) {
     left_out.add(got.stats);
   }
   EXPECT_EQ(left_out[kAway], 0U);
-  // Where triangles are larger than what snapping moves they are left out.
+  // Triangles larger than the snapping's error are left out.
   const Camera close{.eye = {0, 0, 0.7}};
   left_out.add(draw(own, both.own.view(), close, of_size(2048, 2048, Cull::back)).stats);
   EXPECT_GT(left_out[kAway], sheet.triangle_count() / 4);
@@ -279,7 +277,7 @@ void compare_hall(int side, int large_every) {
 
 TEST(Prepared, AHallOfInstances) {
   compare_hall(is_full() ? 100 : 12, 16);
-  compare_hall(16, 0);  // copies that setup takes several of at once: hidden ones, too
+  compare_hall(16, 0);  // small copies, several of which are set up at once; some are hidden
 }
 
 TEST(Prepared, WideAndNarrowPositionsQuadsAndMaterials) {
@@ -298,7 +296,7 @@ TEST(Prepared, WideAndNarrowPositionsQuadsAndMaterials) {
   MeshView of_quads = knot.view();
   of_quads.indices = quads;
   of_quads.faces.kind = FaceKind::quads;
-  of_quads.texcoords = {};  // they are of other faces
+  of_quads.texcoords = {};  // they belong to other faces
   std::vector<std::uint32_t> materials(knot.triangle_count());
   for (std::size_t i = 0; i < materials.size(); ++i)
     materials[i] = static_cast<std::uint32_t>(i % 3);
@@ -352,7 +350,7 @@ TEST(Prepared, RefusesWhatIsOutOfRangeAndTakesWhatIsEmpty) {
   EXPECT_EQ(p.stats.pixels_covered, 0U);
 }
 
-/// Flights with the camera's own near plane through what it meets.
+/// Flights whose own near plane cuts what they meet.
 void compare_flight(const std::string& file, int steps, int size) {
   const auto path = shared_data(file);
   if (!std::filesystem::exists(path)) GTEST_SKIP() << file << " is not there";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Rules of the picture that hold for every scene, device and size; each is the rule of a public
-// conformance suite (dEQP `rasterization`, piglit, D3D11.3) or of docs/coverage.md.
+// Rules of the picture for every scene, device and size, each from a public conformance suite (dEQP
+// `rasterization`, piglit, D3D11.3) or docs/coverage.md.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -24,7 +24,7 @@ namespace {
 
 class Properties : public DeviceTest {
  protected:
-  /// By the pixel camera.
+  /// Draws with the pixel camera.
   static Frame drawn(Mesh mesh, int w = 64, int h = 64) {
     return draw(options(w, h), single(std::move(mesh)), pixel_camera(w, h));
   }
@@ -32,7 +32,7 @@ class Properties : public DeviceTest {
 
 using Index = std::uint32_t;
 
-// A rectangle of the screen as two triangles, whose corners at(x, y) are.
+// A rectangle on the screen as two triangles; at(x, y) gives the corners.
 template <class At>
 void add_quad_at(Mesh& mesh, double x0, double y0, double x1, double y1, const At& at) {
   const auto first = static_cast<Index>(mesh.positions.size());
@@ -58,7 +58,7 @@ struct Point {
   double x, y;
 };
 
-// The order of triangles decides nothing but the winner among equal depths: the first submitted.
+// The order of triangles only decides between equal depths: the first submitted wins.
 TEST_P(Properties, PermutingTrianglesChangesOnlyNumbers) {
   constexpr int kW = 64, kH = 48;
   Painter renderer(options(kW, kH));
@@ -93,7 +93,7 @@ TEST_P(Properties, PermutingTrianglesChangesOnlyNumbers) {
       const auto first = static_cast<std::size_t>(old_winner);
       const std::size_t second = old_of[static_cast<std::size_t>(now)];
       if (first == second) continue;
-      // A tie: each of the two was the first submitted in its order.
+      // A tie: each of the two came first in its order.
       ++ties;
       EXPECT_LT(first, second);
       EXPECT_LT(new_of[second], new_of[first]);
@@ -121,7 +121,7 @@ TEST_P(Properties, OneMeshEqualsTheSameTrianglesInInstances) {
       const auto slice = [&](std::vector<Index>& v) {
         if (!v.empty()) v = {v.begin() + std::ptrdiff_t(begin), v.begin() + std::ptrdiff_t(end)};
       };
-      // An empty part has no positions either, or it would be drawn without indices.
+      // An empty part has no positions either, else it would be drawn without indices.
       if (begin == end) part = Mesh{};
       slice(part.indices);
       slice(part.normals.indices);
@@ -142,7 +142,7 @@ TEST_P(Properties, FullScreenQuadCoversEveryPixelOnce) {
     EXPECT_TRUE(std::ranges::all_of(f.overdraw.pixels(), [](auto n) { return n == 1; }));
     EXPECT_TRUE(std::ranges::all_of(f.depth.pixels(), [](float d) { return d == 0.5F; }));
     EXPECT_EQ(f.stats.fragments, static_cast<std::uint64_t>(w) * static_cast<std::uint64_t>(h));
-    // And far beyond the image on every side, where the guard band cuts it.
+    // Also far beyond the image on every side, where the guard band clips.
     const Frame far = drawn(quad(-1e6, -1e6, 1e6, 1e6, w, h), w, h);
     EXPECT_TRUE(std::ranges::all_of(far.overdraw.pixels(), [](auto n) { return n == 1; }));
     EXPECT_EQ(far.stats.triangles.clipped, 2U);
@@ -178,14 +178,14 @@ TEST_P(Properties, SnappingRoundsTiesToEven) {
   const auto covered = [](double x, double y) {
     return extent_of(drawn(quad(x, y, x + 4, y + 4)));
   };
-  // 10.5 px = 2688/256, an even number: ± 1/512 px both come back to it, and the left and top edges
-  // own the samples on them.
+  // 10.5 px = 2688/256, an even number: ± 1/512 px both round to it, and the left and top edges own
+  // the samples on them.
   EXPECT_EQ(covered(10.5 + kHalf, 10.5 + kHalf), (Extent{10, 10, 14, 14}));
   EXPECT_EQ(covered(10.5 - kHalf, 10.5 - kHalf), (Extent{10, 10, 14, 14}));
   // 3/512 px beside it the tie is between 2689 and 2690.
   EXPECT_EQ(covered(10.5 + 3 * kHalf, 10.5 + 3 * kHalf), (Extent{11, 11, 15, 15}));
   EXPECT_EQ(covered(10.5 - 3 * kHalf, 10.5 - 3 * kHalf), (Extent{10, 10, 14, 14}));
-  // 10.5 + 1/256 px lies on the grid: one subpixel beyond the sample.
+  // 10.5 + 1/256 px is on the grid, one subpixel beyond the sample.
   EXPECT_EQ(covered(10.5 + 2 * kHalf, 10.5 - 2 * kHalf), (Extent{11, 10, 15, 14}));
 }
 
@@ -291,7 +291,7 @@ TEST_P(Properties, CounterClockwiseIsFront) {
 }
 
 TEST_P(Properties, FirstSubmittedWinsEqualDepthAlsoWhenClipped) {
-  // The same plane three times; the first is cut by the guard band, the others are not.
+  // Three times the same plane. Only the first copy is clipped by the guard band.
   Mesh mesh;
   add_quad(mesh, -1e6, -1e6, 1e6, 1e6);
   add_quad(mesh, 8, 8, 56, 56);
@@ -310,7 +310,7 @@ TEST_P(Properties, IndexOutOfRangeIsAnErrorThatNamesIt) {
       refusal_of([&] { (void)draw(renderer, SceneBinding(scene).view(), pixel_camera(64, 64)); });
   EXPECT_TRUE(holds(said, "4711"));
   EXPECT_TRUE(holds(said, "instance 1"));
-  // The renderer is as good as new.
+  // The renderer still works.
   scene.meshes[1] = good;
   EXPECT_EQ(draw(renderer, SceneBinding(scene).view(), pixel_camera(64, 64)).stats.fragments,
             2U * 48 * 48);
@@ -345,7 +345,7 @@ TEST_P(Properties, AnEmptySceneIsBackground) {
   }
 }
 
-// A target does not depend on which other targets are asked for.
+// A target does not depend on the other targets of the frame.
 TEST_P(Properties, EachTargetAloneEqualsAllTogether) {
   constexpr int kW = 90, kH = 70;
   // Hierarchical Z leaves out fragments unless overdraw is counted.
@@ -381,7 +381,7 @@ TEST_P(Properties, TargetsWithAStrideKeepWhatLiesBesideThem) {
   }
 }
 
-// A negative stride turns the rows round (OpenGL's order) and nothing else.
+// A negative stride flips the rows (OpenGL's order) and changes nothing else.
 TEST_P(Properties, TargetsMayLieUpsideDown) {
   constexpr int kW = 61, kH = 45;
   for (const bool deep : {false, true}) {

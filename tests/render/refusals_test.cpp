@@ -174,7 +174,7 @@ TEST(Refusals, TargetsOfAnotherSizeWithEveryShader) {
   }
 }
 
-/// A valid call, which each row of the table below makes wrong.
+/// A valid call. Each row of the table below makes it invalid.
 struct Call {
   std::vector<Vec3> positions{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   std::vector<std::uint32_t> indices{0, 1, 2, 0, 2, 3};
@@ -187,7 +187,7 @@ struct Call {
   std::vector<Vec4> memory = std::vector<Vec4>(4 * kW * kH);
   MeshView mesh{.positions = positions, .indices = indices, .normals = {normals}};
   InstanceView instance{};
-  GeometryView geometry{};  ///< in the place of the mesh, where it is none
+  GeometryView geometry{};  ///< replaces the mesh
   FrameOptions frame{.width = kW, .height = kH};
   Targets targets{.color = {memory.data(), kW, kH}};
 
@@ -218,7 +218,7 @@ AttributeView<T> each(const std::vector<T>& values, Per per) {
   return {values, {}, per};
 }
 
-// Calls that cannot be meant are refused before anything is drawn.
+// Invalid calls are refused before anything is drawn.
 TEST(Refusals, CallsThatCannotBeMeant) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(Call().message(), "");
@@ -324,7 +324,7 @@ TEST(Refusals, CallsThatCannotBeMeant) {
   }
 }
 
-// Parts of one wide image that share its rows, but no columns, do not overlap.
+// Parts of one image that share rows but no columns do not overlap.
 TEST(Refusals, NoTargetsSideBySide) {
   Call call;
   std::vector<Vec4> wide(2 * kW * kH);
@@ -334,7 +334,7 @@ TEST(Refusals, NoTargetsSideBySide) {
   EXPECT_EQ(call.message(), "");
   call.targets.linear.data -= 1;
   EXPECT_TRUE(holds(call.message(), "overlap"));
-  // The other rows first.
+  // The last row first.
   call.targets.linear = {wide.data() + (kH - 1) * 2 * kW + kW, kW, kH, -2 * kW};
   EXPECT_EQ(call.message(), "");
 }

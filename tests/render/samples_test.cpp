@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Several samples of opaque surfaces (raster/frame/sampled_path.hpp) are the reference's, which
-// blends layers, bit for bit: of every instruction set, number of threads and memory limit, with
-// and without what hides.
+// Several samples of opaque surfaces (raster/frame/sampled_path.hpp) equal the reference, which
+// blends layers, bit for bit: on every instruction set, number of threads and memory limit, with
+// and without hierarchical Z.
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -24,7 +24,7 @@
 namespace rastrum::test::samples_test {
 namespace {
 
-/// `counts`: overdraw too, so that nothing may be left out because it is hidden.
+/// `counts` adds overdraw, so that hidden fragments may not be left out.
 Frame draw(Renderer& renderer, const SceneView& scene, const Camera& camera, const FrameOptions& o,
            bool counts) {
   return test::draw(renderer, scene, camera, o,
@@ -47,7 +47,7 @@ std::vector<Renderer> all_renderers() {
 
 class Samples : public testing::Test {
  protected:
-  /// `which`: of the renderers; the rest another time.
+  /// `which` chooses one of the renderers.
   void expect_same(const SceneView& scene, const Camera& camera, const FrameOptions& o, int which,
                    const char* visibility = "samples") {
     const bool counts = which % 2 == 0;
@@ -89,7 +89,7 @@ TEST_F(Samples, OfGeneratedScenesAreTheReferences) {
     const GeneratedScene g = generate(static_cast<std::uint64_t>(i), o.width, o.height);
     SCOPED_TRACE(std::to_string(i).append(", ").append(g.kind));
     o.cull = i % 7 == 0 ? Cull::back : i % 11 == 0 ? Cull::front : Cull::none;
-    // With a position the place of a fragment counts, too, which comes from its depth.
+    // Lights with a position also depend on the fragment's place, which comes from its depth.
     if (i % 3 == 0) o.lights = i % 2 == 0 ? lights : kit;
     ASSERT_NO_FATAL_FAILURE(expect_same(g.view(), g.camera, o, i));
   }
@@ -107,19 +107,19 @@ TEST_F(Samples, OfPointsAndLinesAreTheReferences) {
   }
 }
 
-// Pieces of one clipped triangle that overlap, or leave a centre between them.
+// Pieces of a clipped triangle that overlap, or leave out a centre.
 TEST_F(Samples, OfClippedTrianglesAreTheReferences) {
   const LayerScene layers = overlapping_pieces();
   const OneInstance scene(layers.mesh.view());
   for (int i = 0; i < 3 * static_cast<int>(all_.size()); ++i) {
     const FrameOptions o = options_of(i, 64, 64);
-    // Odd: overdraw counts what pieces cover, the reference's what triangles do.
+    // Odd, so without overdraw: it counts pieces here, triangles in the reference.
     ASSERT_NO_FATAL_FAILURE(expect_same(scene.view(), layers.camera, o, 2 * i + 1));
   }
   EXPECT_GT(clipped_, 0U);
 }
 
-// Triangles that are smaller than the space between samples, and such that hide one another.
+// Triangles smaller than the distance of samples, and triangles that hide one another.
 TEST_F(Samples, OfSmallTrianglesAreTheReferences) {
   const Mesh soup = shapes::soup(20000, 0.001F, 0.05F);
   const OneInstance scene(soup.view());
@@ -131,8 +131,8 @@ TEST_F(Samples, OfSmallTrianglesAreTheReferences) {
   }
 }
 
-// Keys of four samples have room for a primitive's place where ids are small; with the last of
-// those and with larger ones the picture is the same.
+// Keys of four samples also hold a primitive's place if ids are small. The picture must not change
+// at the last such id and beyond.
 TEST_F(Samples, OfLargeIdsAreThoseOfSmallOnes) {
   const Mesh soup = shapes::soup(5000, 0.01F, 0.1F);
   const OneInstance scene(soup.view());
@@ -157,7 +157,7 @@ TEST_F(Samples, OfLargeIdsAreThoseOfSmallOnes) {
 }
 
 // Triangles from a pixel to many times the picture, through one another, so that blocks are filled,
-// cut and hidden; the picture's last bins are cut, too.
+// cut and hidden. The picture's edge cuts the last bins.
 TEST_F(Samples, OfTrianglesOfAllSizesAreTheReferences) {
   Random random(17);
   for (int i = 0; i < 2 * static_cast<int>(all_.size()); ++i) {
@@ -176,14 +176,14 @@ TEST_F(Samples, OfTrianglesOfAllSizesAreTheReferences) {
       }
     }
     const OneInstance scene(mesh.view());
-    // Odd, so that nothing is counted and what hides is asked; each renderer in turn.
+    // Odd, so that overdraw is off and hierarchical Z is on; each renderer in turn.
     ASSERT_NO_FATAL_FAILURE(
         expect_same(scene.view(), pixel_camera(o.width, o.height), o, 2 * i + 1));
   }
 }
 
-// A near wall hides a far one, both of small triangles: the far one is left out. For the near one
-// alone, as many samples are counted as the reference covers.
+// A near wall hides a far one, both of small triangles, so the far one is left out. For the near
+// one alone the number of samples equals the reference's.
 TEST_F(Samples, WhatIsHiddenIsLeftOut) {
   constexpr int kWidth = 131, kHeight = 70;
   const auto wall = [](double depth, bool away, Mesh& mesh) {
@@ -200,7 +200,7 @@ TEST_F(Samples, WhatIsHiddenIsLeftOut) {
   Mesh near, both;
   wall(0.8, false, near);
   const std::size_t hidden = near.indices.size() / 3;
-  const bool faces = [&] {  // whichever way is towards the viewer
+  const bool faces = [&] {  // whichever faces the viewer
     const OneInstance scene(near.view());
     FrameOptions o = options_of(0);
     o.cull = Cull::back;
@@ -225,12 +225,12 @@ TEST_F(Samples, WhatIsHiddenIsLeftOut) {
       const Frame of_both = draw(renderer, two.view(), camera, o, false);
       ASSERT_TRUE(same_images(of_both, want, kColor));
       if (renderer.options().isa == Isa::scalar) continue;
-      // Bins with few triangles do not look what hides them.
+      // Bins with few triangles skip the test for hidden ones.
       ASSERT_LE(of_both.stats.fragments, want.stats.fragments * 9 / 8);
     }
 }
 
-// Clip planes, asked where a triangle is shaded; and what the path leaves to layers.
+// Clip planes, which shading tests, and frames that this path leaves to layers.
 TEST_F(Samples, WhatIsCutIsTheReferencesAndWhatIsBlendedAreLayers) {
   const Mesh sphere = shapes::sphere(20, 10);
   const OneInstance scene(sphere.view());

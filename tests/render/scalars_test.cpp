@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scalars become colours (docs/scalar_rules.md): interpolated first and mapped then, against a
-// float64 oracle; at every kind of geometry; and what is refused.
+// Scalars as colours (docs/scalar_rules.md), interpolated before they are mapped: against a float64
+// oracle, for every kind of geometry; and refusals.
 #include <algorithm>
 #include <cmath>
 #include <deque>
@@ -30,7 +30,7 @@ namespace {
 constexpr int kW = 72, kH = 56;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// The number itself as a grey: red is where in the range it lies.
+/// A grey map: red is the number's place in the range.
 ScalarMapping grey(double low, double high) {
   return {.map = {"grey", {{0, 0, 0, 1}, {1, 1, 1, 1}}, false}, .range = ScalarRange{low, high}};
 }
@@ -51,7 +51,7 @@ SceneView scene_of(const InstanceView& instance, const ScalarMapping& mapping) {
   return {{&instance, 1}, {}, {}, {&mapping, 1}};
 }
 
-/// Seen by square_camera.
+/// Draws with square_camera.
 Frame draw(const InstanceView& instance, const ScalarMapping& mapping,
            const RenderOptions& o = flat()) {
   return draw(scene_of(instance, mapping), square_camera(), o);
@@ -111,7 +111,7 @@ TEST(Scalars, AreInterpolatedFirstAndMappedThen) {
   EXPECT_GT(checked, 50000);
 }
 
-// 64 bands over two triangles: colours at four corners, blended, could show none of them.
+// 64 bands over two triangles. Blending the colours of the four corners would show none of them.
 TEST(Scalars, AreNotSmearedByASteepMap) {
   const std::vector<float> values{0, 1, 1, 0};
   ScalarMapping mapping = grey(0, 1);
@@ -133,7 +133,7 @@ TEST(Scalars, OfWhatIsNoNumberHaveItsColour) {
 }
 
 TEST(Scalars, OfThreeEqualCornersAreExactlyThat) {
-  // 0.1 is none of binary; a range that ends there shows no colour of what lies beyond.
+  // 0.1 has no exact binary form. If the range ends there, no colour of values beyond may show.
   const std::vector<double> values{0.1, 0.1, 0.1, 0.1};
   ScalarMapping mapping = grey(-1, 0.1);
   mapping.above = Vec4{1, 0, 0, 1};
@@ -151,7 +151,7 @@ TEST(Scalars, OfAnInstanceStandForItsGeometrys) {
   EXPECT_EQ(p.scalars(kW / 2, kH / 2), 0.25F);
 }
 
-// Alike instances are one draw (scene/instance_runs.hpp); what shows numbers stands between such.
+// Alike instances are one draw (scene/instance_runs.hpp); one with numbers stands between them.
 TEST(Scalars, StandBetweenRunsOfAlikeInstances) {
   MeshView mesh{.positions = kSquare, .indices = kTwoTriangles};
   std::vector<InstanceView> instances(8);
@@ -201,7 +201,7 @@ TEST(Scalars, HaveAMappingEachInstanceChooses) {
   EXPECT_EQ(p.color(48, 32).x, 0.25F);
 }
 
-// The automatic range is that of the instances which use the mapping.
+// The automatic range covers the instances that use the mapping.
 TEST(Scalars, HaveTheRangeOfTheirFiniteNumbers) {
   const std::vector<double> values{3, 7, 7, kNan};
   const OneInstance instance(square(values));
@@ -309,7 +309,7 @@ TEST(Scalars, AreColouredInLinearLightByMaterials) {
   o.shader = Shader::material;
   const Frame p = test::draw(o, scene, square_camera(), kColor | kAlbedo);
   const Vec4 c = p.color(kW / 2, kH / 2), a = p.albedo(kW / 2, kH / 2);
-  EXPECT_NEAR(c.x, 0.5, 5e-5);  // what the transfer function is to its inverse
+  EXPECT_NEAR(c.x, 0.5, 5e-5);  // as precise as the transfer function's inverse
   EXPECT_EQ(c.x, c.y);
   EXPECT_NEAR(a.x, 0.21404114, 1e-7);
   EXPECT_EQ(a.w, 1);
@@ -325,7 +325,7 @@ TEST(Scalars, OfNothingChangeNoBit) {
   SceneView scene = sphere.view;
   scene.scalar_mappings = {&mapping, 1};
   EXPECT_EQ(without, digest(render(scene, camera, o)));
-  // Numbers without a mapping are read by their target alone.
+  // Without a mapping, numbers go only to their target.
   InstanceView instance = scene.instances[0];
   instance.scalar = 3;
   const SceneView numbered{{&instance, 1}, {}, {}, {}};
@@ -367,7 +367,7 @@ TEST(Scalars, RefuseWhatDoesNotFit) {
   const ScalarMapping upside_down{.range = ScalarRange{1, 0}};
   expect_refused("ScalarMapping::range: upside down", [&] { (void)draw(instance, upside_down); });
   ScalarMapping log{.logarithmic = true};
-  instance.scalar = -1;  // nothing has a logarithm: the colour of no number
+  instance.scalar = -1;  // negative numbers have no logarithm: the colour of NaN
   EXPECT_EQ(draw(instance, log).color(kW / 2, kH / 2), log.nan);
 }
 

@@ -24,7 +24,7 @@ class SharedEdges : public DeviceTest {};
 
 using Index = std::uint32_t;
 
-/// The cells of (n + 1)² positions, each cut from its first corner or from its second.
+/// The cells of (n + 1)² positions, each cut from its first or its second corner.
 template <class F>
 void add_cells(Mesh& mesh, int n, const F& from_the_first) {
   for_each_cell(n, n, 0, [&](Index a, Index b, Index c, Index d) {
@@ -45,8 +45,8 @@ double distance(Point p, Point a, Point b) {
   return std::hypot(p.x - a.x - t * dx, p.y - a.y - t * dy);
 }
 
-// Every sample inside the outline is drawn once, every sample outside never; those within the
-// rounding of a corner's position decide for themselves, but never twice.
+// Every sample inside of the outline is drawn once, every sample outside never. Samples within a
+// corner's rounding may be either, but never drawn twice.
 void expect_covered_once(const Frame& f, const std::vector<Point>& outline) {
   for (const auto& [x, y] : pixels(f.overdraw.width(), f.overdraw.height())) {
     const Point p{x + 0.5, y + 0.5};
@@ -67,7 +67,7 @@ void expect_covered_once(const Frame& f, const std::vector<Point>& outline) {
   }
 }
 
-// A place in the image, at a random |w| from 0.1 to 4 for perspective.
+// A place in the image; in perspective at a random |w| from 0.1 to 4.
 struct Screen {
   Random& random;
   int width, height;
@@ -138,8 +138,8 @@ TEST_P(SharedEdges, RotatedGridsCoverThemOnce) {
   }
 }
 
-// A floor seen from above: its cells cross the near plane, pass behind the eye and leave the guard
-// band. The reference is the ray through each sample.
+// A floor seen from above, whose cells cross the near plane, pass behind the eye and leave the
+// guard band. The reference is the ray through each sample.
 TEST_P(SharedEdges, ClippedFloorsCoverThemOnce) {
   constexpr int kW = 66, kH = 59;
   Painter renderer(options(kW, kH));
@@ -183,7 +183,7 @@ TEST_P(SharedEdges, ClippedFloorsCoverThemOnce) {
       return std::max(std::abs(u), std::abs(v)) < n / 2.0 * cell;
     };
     for (const auto& [x, y] : pixels(kW, kH)) {
-      // Corners far outside the image are rounded to float32 px, so an edge may move a little.
+      // Corners far outside of the image are rounded to float32 px, so edges may move a little.
       constexpr double kNear = 0.03;
       int inside = 0;
       for (const double dx : {-kNear, kNear})

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A frame that is stopped (parallel/stop.hpp) ends after a bounded amount of work, counted in calls
-// of the caller's own functions, and leaves nothing behind: the next frame of the same renderer is
-// that of a new one, counters included. For every point of the coverage × visibility table, and
-// with layers.
+// A stopped frame (parallel/stop.hpp) ends after a bounded amount of work, counted in calls of the
+// caller's functions, and leaves no trace: the next frame equals a new renderer's, counters
+// included. For every point of the coverage × visibility table, and with layers.
 #include <cstdint>
 #include <memory>
 #include <stop_token>
@@ -30,7 +29,7 @@ namespace rastrum::test::stop_test {
 namespace {
 
 constexpr int kSize = 256;
-/// How many blocks a thread has in hand: those that go to a region together.
+/// The blocks of a thread that go to a region together.
 constexpr std::int64_t kCapacity = raster::kBlockCapacity;
 
 /// A soup whose vertices, fragments and pixels are counted.
@@ -74,8 +73,8 @@ Frame frame(Painter& renderer, Counted& counted, Counted::Triggers& triggers, bo
   return draw(renderer, {&d, 1}, counted, &counted);
 }
 
-/// Stops frames of one renderer at calls of each function, and compares whole ones between them.
-/// `most_shaded`: blocks that may follow.
+/// Stops frames of one renderer at calls of each function and draws whole frames between them. At
+/// most `most_shaded` blocks may follow a stop.
 void expect_bounded(const RenderOptions& o, bool translucent, std::int64_t most_shaded) {
   const std::int64_t most_tested = kCapacity * o.threads;
   Counted counted;
@@ -112,7 +111,7 @@ class Stop : public testing::TestWithParam<TablePoint> {};
 TEST_P(Stop, EndsSoonAndLeavesNothing) {
   RenderOptions o = options(4);
   static_cast<family::Row&>(o) = GetParam();
-  // A thread shades a bin; `tuple` shades what it stores, where blocks are handed on.
+  // A thread shades a bin. `tuple` shades blocks as they come.
   expect_bounded(o, false, o.visibility == "tuple" ? 4 * kCapacity : 4 * raster::kBlocksPerBin);
 }
 
@@ -126,8 +125,8 @@ TEST(StopLayers, EndSoonAndLeaveNothing) {
                    (method.added == nullptr ? "exact" : "filter"));
       RenderOptions o = options(threads);
       o.transparency = method;
-      // A thread shades the packed fragments of a bin, of which there are less than 2¹⁶, then what
-      // is opaque behind them.
+      // A thread shades the packed fragments of a bin, fewer than 2¹⁶, then the opaque surfaces
+      // behind them.
       expect_bounded(o, true, ((1 << 16) / 64 + raster::kBlocksPerBin) * threads);
     }
 }
@@ -146,7 +145,7 @@ TEST(StopReference, EndsSoon) {
   }
 }
 
-// A token that a frame is given stops it from outside, in the middle of the frame.
+// A frame's token stops it from outside, in the middle.
 TEST(StopToken, EndsAFrameAndLeavesTheRenderer) {
   for (const bool translucent : {false, true})
     for (const Device device : {Device::serial, Device::threads}) {
@@ -167,7 +166,7 @@ TEST(StopToken, EndsAFrameAndLeavesTheRenderer) {
       Targets targets{.color8 = color.view()};
       EXPECT_THROW(renderer.draw({&d, 1}, counted, &counted, targets, {}, triggers.test.token()),
                    Stopped);
-      // A fragment at a time, and a triangle has at most all pixels.
+      // One fragment at a time; a triangle covers at most all pixels.
       EXPECT_LE(triggers.test.after(),
                 device == Device::serial ? o.width * o.height : kCapacity * o.threads);
       Counted::Triggers again;
@@ -202,7 +201,7 @@ TEST(StopToken, IsTakenByAllThatDrawFrames) {
   draw_all([](const auto& frame) { EXPECT_NO_THROW(frame()); });
   source.request_stop();
   draw_all([](const auto& frame) { EXPECT_THROW(frame(), Stopped); });
-  // A frame without a token heeds the scope around it, as before.
+  // A frame without a token obeys the scope around it.
   const StopScope scope(token);
   EXPECT_THROW(renderer.render(boxes.view, boxes.camera, targets), Stopped);
 }
@@ -232,7 +231,7 @@ TEST(StopToken, IsOfAnyTypeThatAsks) {
   EXPECT_TRUE(StopToken(source).stop_possible());
 }
 
-/// Draws nothing, and is asked to stop meanwhile.
+/// Draws nothing; a stop is requested meanwhile.
 class AskedMeanwhile final : public raster::FrameDrawer {
  public:
   explicit AskedMeanwhile(std::stop_source& source) : source_(source) {}
@@ -244,7 +243,7 @@ class AskedMeanwhile final : public raster::FrameDrawer {
   FrameStats shade(raster::FrameRequest& /*request*/, const raster::KnownBlocks&) override {
     return {};
   }
-  static inline bool asked = false;  ///< whether the frame knew of it
+  static inline bool asked = false;  ///< whether the frame noticed the request
 
  private:
   std::stop_source& source_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The arrays of spheres, cylinders, tubes, discs, points and lines: one picture, bit for bit,
-// whatever their types and strides; float64 places stand still far from the origin; and what cannot
-// be drawn is refused by instance, array and place, or dropped and counted.
+// The arrays of spheres, cylinders, tubes, discs, points and lines: the same bits for all types and
+// strides. float64 positions stay exact far from the origin. Invalid arrays are refused by
+// instance, array and element, or their primitives are dropped and counted.
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -60,7 +60,7 @@ TEST(SurfaceArrays, EveryLayoutHasThePictureOfThePackedOne) {
   }
 }
 
-// A molecule at 10⁷ units: its places are float64, and so is all that is composed of them.
+// A molecule at 10⁷ units with float64 positions; all that is derived from them is float64 too.
 TEST(SurfaceArrays, AMoleculeFarFromTheOriginStandsStill) {
   const Cloud cloud(120);
   const Vec3d far{1e7, -2e7, 3e7};
@@ -165,7 +165,7 @@ TEST(SurfaceArrays, DropAndCountWhatIsNotFinite) {
   const std::vector<double> radii{1, kNan, kInfinity, -1, -kInfinity, 0, 1e300, 1};
   const std::vector<Vec3d> places(radii.size());
   const ArrayView<float> wide = ArrayView<float>::of(radii.data(), radii.size());
-  // 1e300 rounds to infinity.
+  // 1e300 becomes infinite.
   const auto dropped = [&](const GeometryView& g) {
     return draw(renderer, g).stats.triangles.dropped;
   };
@@ -193,8 +193,8 @@ TEST(SurfaceArrays, ThatAreEmptyDrawNothing) {
   }
 }
 
-// Geometries that a scene owns move with it, get a look of their own beside materials, and are
-// drawn like views of them.
+// Geometries that a scene owns move with it, have a look beside materials, and are drawn like
+// views.
 TEST(SurfaceArrays, AreOwnedByScenesToo) {
   Scene scene = shapes::scene_from_spec("torus_knot");
   scene.materials.resize(1);

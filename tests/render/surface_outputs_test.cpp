@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Targets and picks of spheres, cylinders, cones, tubes and discs: against the oracle of surfaces,
-// beside and through triangles, cut by planes, and the same bits whatever draws.
+// Targets and picks of spheres, cylinders, cones, tubes and discs: against the surface oracle,
+// beside and through triangles, cut by planes, and with the same bits on every backend.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -37,7 +37,7 @@ Frame draw(Renderer& renderer, const SurfaceScene& s, FrameOptions frame) {
   return test::draw(renderer, s.view(), s.camera, frame, kSurfaces);
 }
 
-/// The surface of the oracle that a pixel shows; null: it is a tie, or a triangle.
+/// The oracle's surface at a pixel; null for a tie or a triangle.
 const SurfaceHit* hit_of(const std::vector<SurfaceHit>& hits, std::int64_t id, float depth) {
   const SurfaceHit* best = nullptr;
   const auto off = [&](const SurfaceHit& h) {
@@ -49,8 +49,8 @@ const SurfaceHit* hit_of(const std::vector<SurfaceHit>& hits, std::int64_t id, f
                                                                                     : nullptr;
 }
 
-/// Pixels that were looked at, and those at which something is further off than rounding: an end
-/// that meets a side, a silhouette.
+/// Checked pixels, and those that differ by more than rounding: where an end meets a side, or at
+/// silhouettes.
 struct Seen {
   int pixels = 0, position = 0, normal = 0, along = 0, backs = 0, inside = 0;
 };
@@ -63,7 +63,7 @@ void check_pixel(const SurfaceScene& s, const Frame& images, const SurfaceHit& h
   const Real reach = std::max(p->r0, p->r1);
   const Real off = length(hit.position - widen(images.positions(x, y)));
   seen.position += off > 2e-7L * length(hit.position) + 1e-6L * reach ? 1 : 0;
-  // Unit length, to the viewer.
+  // Unit length, towards the viewer.
   const Vec3 n = images.normals(x, y);
   ASSERT_NEAR(length(n), 1, 1e-6);
   const OracleCamera& eye = s.eye;
@@ -75,7 +75,7 @@ void check_pixel(const SurfaceScene& s, const Frame& images, const SurfaceHit& h
                       static_cast<float>(unit.z)};
   seen.normal += std::min(length(n - outwards), length(n + outwards)) > 1e-4F ? 1 : 0;
   seen.inside += length(n - outwards) > 1 ? 1 : 0;
-  // The camera's axes are the world's.
+  // The camera's axes equal the world's.
   ASSERT_LE(length(images.camera_normals(x, y) - n), 1e-6F);
   seen.along +=
       std::abs(static_cast<Real>(images.barycentrics(x, y).x) - hit.along) > 1e-4L ? 1 : 0;
@@ -108,7 +108,7 @@ TEST(SurfaceOutputs, AreThoseOfTheOracle) {
       const Located at = locate(s.view(), static_cast<std::uint64_t>(id));
       ASSERT_EQ(images.instances(x, y), static_cast<std::int64_t>(at.instance));
       ASSERT_EQ(images.primitives(x, y), static_cast<std::int64_t>(at.primitive));
-      // At the far plane or beyond it depth does not tell one side from the other.
+      // At or beyond the far plane, depth does not tell the sides apart.
       if (s.instances[at.instance].mesh() != nullptr || !(images.depth(x, y) > 0)) continue;
       const auto hits = surfaces_at(s.eye, s.primitives, x + 0.5L, y + 0.5L);
       const SurfaceHit* const hit = hit_of(hits, id, images.depth(x, y));
@@ -188,7 +188,7 @@ struct One {
   }
 };
 
-// Where only a sample sees the surface, the point is that sample's.
+// If only a sample covers the surface, the point is the sample's.
 TEST(SurfaceOutputs, OfSeveralSamplesLieOnTheSurface) {
   const One one;
   const Frame images = one.draw({.samples = 8}, 31), centre = one.draw({}, 31);
@@ -229,7 +229,8 @@ TEST(SurfaceOutputs, AlbedoIsTheBaseColourBeforeLight) {
   EXPECT_EQ(albedo(Shader::flat), plain_material(false).base_color);
 }
 
-// A fat end of a tube that holds its thin one is that end: its colour, its place along the axis.
+// If a tube's thick end contains its thin end, all is the thick end: its colour, its place on the
+// axis.
 TEST(SurfaceOutputs, OfATubeThatOneEndHoldsAreThatEnds) {
   const std::vector<Vec3> positions{{0, 0, -4}, {0, 0.25F, -4}};
   const std::vector<Vec4> colors{{1, 0, 0, 1}, {0, 1, 0, 1}};
@@ -244,8 +245,8 @@ TEST(SurfaceOutputs, OfATubeThatOneEndHoldsAreThatEnds) {
   }
 }
 
-// AlphaMode::mask by what a quadric has: the factor and its colours, linear along the axis. The end
-// that is cut off is the nearer one, so that the inside is seen.
+// AlphaMode::mask by a quadric's values: the factor and the colours, linear along the axis. It cuts
+// off the nearer end, so the inside is visible.
 TEST(SurfaceOutputs, MasksCutWhatTheirColoursSay) {
   const std::vector<Vec3> positions{{-0.5F, 0, -3}, {0.5F, 0.25F, -6}};
   const std::vector<Vec4> colors{{1, 1, 1, 0}, {1, 1, 1, 1}};
@@ -266,7 +267,7 @@ TEST(SurfaceOutputs, MasksCutWhatTheirColoursSay) {
           if (images.ids(x, y) < 0) continue;
           const Vec3d from = Vec3d(images.positions(x, y)) - start;
           const double along = dot(from, axis) / dot(axis, axis);
-          // A pixel of several samples was asked about at one of them.
+          // A pixel of several samples is tested at one of them.
           ASSERT_GE(along, samples == 1 ? 0.25 - 1e-6 : 0.15) << x << ", " << y;
           const Vec3d across = from - axis * along;
           (dot(across, Vec3d(images.normals(x, y))) < 0 ? inside : outside) += along < 0.99;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Spheres, cylinders, cones, tubes and discs against their oracle, and every way to draw them
-// against the others.
+// Spheres, cylinders, cones, tubes and discs against their oracle, and all ways to draw them
+// against each other.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,11 +24,10 @@ namespace surfaces_test {
 
 constexpr int kWidth = 40, kHeight = 27;
 
-/// Two surfaces that lie closer than this, in reversed depth and relative to it, may come in either
-/// order: depth is a float32. Triangles, which have a test of their own (oracle_test.cpp), are
-/// snapped and have one of a plane in float32.
+/// Surfaces closer than this in reversed depth, relative, may be in either order, because depth is
+/// float32. Triangles, which oracle_test.cpp tests, are snapped and have a float32 plane.
 constexpr Real kDepthTie = 3e-7L, kTriangleTie = 2e-3L;
-/// A silhouette that passes a pixel's centre closer than this, px.
+/// A silhouette closer than this to a pixel's centre is a tie, px.
 constexpr Real kEdgeTie = 1e-6L, kTriangleEdgeTie = 1;
 
 Frame draw(Renderer& renderer, const SurfaceScene& s, FrameOptions frame,
@@ -39,7 +38,7 @@ Frame draw(Renderer& renderer, const SurfaceScene& s, FrameOptions frame,
   return test::draw(renderer, s.view(), s.camera, frame, kinds);
 }
 
-/// The things that may be seen at a pixel: more than one in a tie.
+/// The things that a pixel may show: several in a tie.
 class Truth {
  public:
   Truth(const SurfaceScene& s, int x, int y) : s_(s), x_(x), y_(y) {}
@@ -47,11 +46,11 @@ class Truth {
   [[nodiscard]] bool allows(std::int64_t id, float depth) {
     if (allows_at(s_.primitives, 0, 0, id, depth)) return true;
     is_tie_ = true;
-    // Allows things that are seen beside the centre.
+    // Also allows what is visible beside the centre.
     for (int dy = -1; dy <= 1; ++dy)
       for (int dx = -1; dx <= 1; ++dx)
         if (allows_at(s_.primitives, dx * kEdgeTie, dy * kEdgeTie, id, depth)) return true;
-    // Near a triangle's edge it may be there or not.
+    // Near a triangle's edge the triangle may be missing.
     std::vector<SurfacePrimitive> others = s_.primitives;
     std::erase_if(others, is_triangle);
     if (others.size() == s_.primitives.size() || !is_at_triangle_edge()) return false;
@@ -99,7 +98,7 @@ class Truth {
       const Real tie = loose ? kTriangleTie * std::max(nearest, Real(0.05)) : kDepthTie * nearest;
       if (cut(h.depth) < nearest - tie) break;
       if (h.id != id) continue;
-      // At a silhouette depth runs away within the tie.
+      // At a silhouette depth changes quickly within the tie.
       const bool is_beside = dx != 0 || dy != 0;
       const Real slack = loose ? tie : is_beside ? Real(3e-3) * nearest : tie;
       if (std::abs(cut(h.depth) - static_cast<Real>(depth)) > slack + Real(1e-12)) continue;
@@ -160,14 +159,14 @@ FrameOptions frame_of(int seed) {
                       .samples = seed % 5 == 2 ? 4 : 1};
 }
 
-/// Counted pictures, and the images of the surface at a pixel.
+/// Compares counters and the images of the surface at a pixel.
 TEST(Surfaces, AreTheSameBitsEverywhere) {
   EveryWay ways{{.threads = 1},
                 {.threads = 3},
                 {.memory_limit = 3 << 20, .threads = 2, .isa = available_isas().back()}};
   const int n = share_of(154, 55);
   for (int seed = 0; seed < n; ++seed) {
-    // Several bins and, below a limit, several bands.
+    // Several bins; below a limit also several bands.
     SurfaceScene s = generate_surfaces(static_cast<std::uint64_t>(seed), 150, 97);
     if (seed % 4 == 1) add_clip_planes(s, static_cast<std::uint64_t>(seed));
     for (const unsigned kinds : {kCounted & ~kColor8, +kSurfaces}) {
@@ -180,7 +179,7 @@ TEST(Surfaces, AreTheSameBitsEverywhere) {
   }
 }
 
-/// Normals for a shader point outwards, whatever side is seen, under any affine matrix, too.
+/// A shader's normals point outward on both sides, under any affine matrix.
 TEST(Surfaces, HaveTheNormalsOfTheOracle) {
   Renderer renderer({.threads = 1});
   int checked = 0, seams = 0;
@@ -197,7 +196,7 @@ TEST(Surfaces, HaveTheNormalsOfTheOracle) {
       ++checked;
       const Point3 d = n * (1 / length(n)) - (widen(p.color(x, y)) * 2 - Point3{1, 1, 1});
       const Real off = std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)});
-      // Where a side meets an end, rounding decides whose normal it is; an apex has none.
+      // Where a side meets an end, rounding decides the normal; an apex has none.
       seams += off > 1e-4L;
     }
   }
@@ -205,8 +204,7 @@ TEST(Surfaces, HaveTheNormalsOfTheOracle) {
   EXPECT_LE(seams, checked / 20000);
 }
 
-/// Samples at the places of D3D11's pattern of 4 (in sixteenths), and the share of a pixel that 64
-/// samples find.
+/// Covered samples of D3D11's pattern of 4 (in sixteenths), and a pixel's coverage by 64 samples.
 TEST(Surfaces, SilhouettesAreThoseOfTheSamples) {
   constexpr int kPattern[4][2] = {{-2, -6}, {6, -2}, {-6, 2}, {2, 6}};
   Renderer renderer({.threads = 1});
@@ -241,7 +239,7 @@ TEST(Surfaces, SilhouettesAreThoseOfTheSamples) {
   EXPECT_LT(off_64 / edges, 0.13);
 }
 
-/// The colour in the middle of a picture of one sphere, which does not reach its corner.
+/// The colour at the centre of a picture of one sphere, whose corners are empty.
 Vec4 middle(const OneInstance& sphere, FrameOptions frame = {}) {
   frame.width = frame.height = 15;
   frame.shader = Shader::flat;
@@ -251,7 +249,7 @@ Vec4 middle(const OneInstance& sphere, FrameOptions frame = {}) {
   return f.color(7, 7);
 }
 
-/// A closed surface has two layers.
+/// A closed surface has two layers: front over back.
 TEST(Surfaces, AreBlendedFrontOverBack) {
   const Vec3 centre{0, 0, -4};
   const OneInstance sphere(SpheresView{.centers = std::span(&centre, 1)});
@@ -259,7 +257,7 @@ TEST(Surfaces, AreBlendedFrontOverBack) {
   EXPECT_EQ(middle(sphere, {.cull = Cull::back, .opacity = 0.5F}).w, 0.5F);
 }
 
-/// An instance's own look, as a mesh's.
+/// An instance's look works as on a mesh.
 TEST(Surfaces, HaveTheirInstancesLook) {
   const Vec3 centre{0, 0, -4};
   const Vec4 green{0, 1, 0, 1};

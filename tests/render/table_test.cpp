@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every point of the coverage × visibility table draws the bits of the serial reference, each in a
-// test of its own, so that a broken row is named: on generated scenes, on meshes, in several
-// passes, with every number of threads, and on the real meshes up to 8192² (label `full`). The real
-// meshes are also what the oracle says: from the default camera, and from so near that triangles
+// Every point of the coverage × visibility table draws the serial reference's bits. Each point is a
+// test of its own, so that failures name the row: on generated scenes, on meshes, in several
+// passes, with every number of threads, and on real meshes up to 8192² (label `full`). The real
+// meshes are also compared with the oracle, from the default camera and from so near that triangles
 // cross the near plane and the guard band.
 #include <filesystem>
 #include <string>
@@ -30,7 +30,7 @@ class Table : public testing::TestWithParam<TablePoint> {
   static RenderOptions serial(int width, int height) {
     return RenderOptions({.width = width, .height = height}, {.device = Device::serial});
   }
-  /// The point, on the n-th of all combinations of threads and instruction sets.
+  /// The point, with the n-th combination of threads and instruction sets.
   static RenderOptions point(int width, int height, int n) {
     static const std::vector<Isa> isas = available_isas();
     static constexpr int kThreads[] = {1, 2, 8};
@@ -74,7 +74,7 @@ TEST_P(Table, EqualsSerialOnMeshes) {
       Painter reference(serial(size, size));
       const Frame expected = draw(reference, mesh.view, mesh.camera);
       EXPECT_GT(expected.stats.pixels_covered, 200U);
-      // Sanitizers see each number of threads and each instruction set once.
+      // Sanitizer runs use each number of threads and each instruction set once.
       const int step = test_share() < 100 ? 4 : 1;
       for (int n = 0; n < combinations(); n += step) {
         Painter renderer(point(size, size, n));
@@ -109,9 +109,9 @@ TEST_P(RealMeshes, EqualSerialAtEverySizeAndPoint) {
   constexpr int kSizes[][2] = {{1, 1}, {64, 64}, {1920, 1080}, {4096, 4096}, {8192, 8192}};
   for (const auto& [width, height] : kSizes) {
     RenderOptions options({.width = width, .height = height});
-    options.transparency.method = Transparency::none;  // which every point of the table draws
+    options.transparency.method = Transparency::none;  // every point of the table draws it
     options.device = Device::serial;
-    // No colours: at these sizes they would take the memory of the rest.
+    // Without colours, which would need too much memory at these sizes.
     const Frame expected = draw(options, mesh.view, mesh.camera, kVisible);
     options.device = Device::threads;
     for (const TablePoint& point : table_points()) {
@@ -131,7 +131,7 @@ TEST_P(Meshes, EqualOverTheFamilyAndTheOracle) {
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
   const Fitted mesh(io::read_scene(file));
   RenderOptions base({.width = 203, .height = 149});
-  base.shader = Shader::phong;  // all faces: `material` leaves the back of some out
+  base.shader = Shader::phong;  // unlike `material`, it draws the back of all faces
   EveryWay ways(base);
   for (const Camera& camera :
        {mesh.camera, fit_camera(mesh.view, 1.0472F, true), close_camera(mesh.view)}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tone mapping: against its formulas in float64, the same bits for everyone, and what it is not of.
+// Tone mapping: its formulas in float64, the same bits everywhere, and what it leaves alone.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kW = 96, kH = 72;
 
-/// A ball from black to far brighter than white, before a background that is no black.
+/// A ball from black to far brighter than white, in front of a background that is not black.
 struct Bright {
   Mesh ball = shapes::sphere(24, 24);
   std::vector<Material> materials{Material{}};

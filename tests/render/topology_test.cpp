@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Draws of points, lines and triangles in any mix, with widths, sizes, depth biases and windings:
-// serial draws what the brute-force oracle says, and every point of the table what serial draws.
+// serial equals the brute-force oracle, and every point of the table equals serial.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -23,7 +23,7 @@
 namespace rastrum::test::topology_test {
 namespace {
 
-/// A draw as the test thinks of it.
+/// The test's description of a draw.
 struct Plan {
   Topology topology = Topology::triangles;
   std::vector<std::uint32_t> indices;
@@ -37,7 +37,7 @@ struct Mix {
   std::vector<Plan> plans;
 };
 
-/// A vertex that is seen at (x, y) px, w before the eye.
+/// A vertex that appears at (x, y) px, at distance w from the eye.
 Vec4 vertex_at(double x, double y, double w, double depth, int width, int height) {
   const double ndc_x = 2 * x / width - 1, ndc_y = 1 - 2 * y / height;
   return {static_cast<float>(ndc_x * w), static_cast<float>(ndc_y * w),
@@ -90,8 +90,8 @@ bool keeps(const Plan& plan, bool counter_clockwise) {
   return front == (plan.cull == Cull::back);
 }
 
-/// Whole primitives as the tests' own projection snaps them; others as the library's clipper cuts
-/// them (lines_test and clip_test hold it by itself).
+/// Whole primitives come from the tests' own projection, others from the library's clipper
+/// (lines_test and clip_test test it).
 Expected expected_of(const Mix& mix, int width, int height) {
   Expected out;
   std::int64_t id = -1;
@@ -204,8 +204,8 @@ TEST(Topologies, MixesEqualTheOracle) {
   }
 }
 
-/// Every point of the table, with any number of threads and every instruction set; a budget so
-/// small that vertices are projected where they are read is one of the cases.
+/// Every point of the table, with any number of threads and every instruction set. In one case the
+/// budget is so small that vertices are projected where they are read.
 class TopologyTable : public testing::TestWithParam<TablePoint> {};
 
 TEST_P(TopologyTable, MixesEqualSerial) {
@@ -222,7 +222,7 @@ TEST_P(TopologyTable, MixesEqualSerial) {
   const auto mixes = static_cast<std::uint64_t>(share_of(30, 6));
   for (std::uint64_t seed = 0; seed < mixes; ++seed) {
     Mix mix = random_mix(seed, kWidth, kHeight);
-    // More vertices than a quarter of the budget holds.
+    // More vertices than fit into a quarter of the budget.
     mix.clip.resize(std::size_t{1} << 17, Vec4{0, 0, 0, 1});
     const auto program = program_of(mix);
     std::vector<raster::Draw> draws = draws_of(mix, program);
@@ -238,8 +238,8 @@ TEST_P(TopologyTable, MixesEqualSerial) {
 INSTANTIATE_TEST_SUITE_P(Points, TopologyTable, testing::ValuesIn(table_points()),
                          [](const auto& p) { return test_name(p.param); });
 
-// Translucent points, lines and triangles among opaque ones; with several samples points and lines
-// are at all samples of their pixels.
+// Translucent points, lines and triangles among opaque ones. With several samples, points and lines
+// cover all samples of their pixels.
 TEST(Topologies, LayersOfMixesEqualSerial) {
   constexpr int kWidth = 61, kHeight = 47;
   const auto mixes = static_cast<std::uint64_t>(share_of(30, 6));
@@ -299,7 +299,7 @@ TEST(Topologies, RefusesWidthsSizesAndBiasesOutOfRange) {
     EXPECT_NE(message(&raster::Draw::depth_bias, nan), "");
     EXPECT_NE(message(&raster::Draw::depth_bias_slope, std::numeric_limits<float>::infinity()), "");
     EXPECT_EQ(message(&raster::Draw::line_width, 4096), "");
-    // An index out of range is found on the way of lines, too.
+    // Lines report an index out of range too.
     const std::vector<std::uint32_t> indices{0, 1};
     raster::Draw d = program.draw(1, indices, Topology::lines);
     EXPECT_THROW((void)renderer.draw({&d, 1}, program, nullptr, {}), Error);

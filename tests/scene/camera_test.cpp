@@ -17,7 +17,7 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-/// A camera that looks from (3, −2, 5) in no special direction.
+/// A camera that looks from (3, −2, 5) in an arbitrary direction.
 Camera oblique() {
   return Camera{.eye = {3, -2, 5},
                 .target = {-1, 4, 2},
@@ -51,7 +51,7 @@ TEST(Camera, IsARigidMotionThatPutsTheTargetAhead) {
   EXPECT_NEAR(determinant, 1, 1e-12);
   expect_near(place_of(v, c.eye), {0, 0, 0});
   expect_near(place_of(v, c.target), {0, 0, -std::sqrt(16.0 + 36.0 + 9.0)});
-  // `up` has no part to the right and a positive part upward.
+  // `up` appears upward, not to the side.
   const Vec3d up = place_of(v, c.eye + c.up);
   EXPECT_NEAR(up.x, 0, 1e-6);
   EXPECT_GT(up.y, 0);

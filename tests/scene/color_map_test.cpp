@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Colour maps against the tables that their authors published, and what of a map a number is.
+// Colour maps against their published tables, and the mapping of numbers.
 #include <cmath>
 #include <limits>
 #include <string>
@@ -34,7 +34,7 @@ const std::vector<Published> kPublished = {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A map of these red channels, in tenths, by which its entries are told apart.
+/// A map whose entries have these red values, in tenths.
 ColorMap tenths(std::initializer_list<int> reds, bool discrete = false) {
   ColorMap map{"tenths", {}, discrete};
   for (const int r : reds) map.colors.push_back({static_cast<float>(r) / 10.0F, 0, 0, 1});
@@ -57,14 +57,14 @@ TEST(ColorMap, HasThePublishedColours) {
     ASSERT_EQ(map.colors.size(), reversed.colors.size());
     EXPECT_EQ(map.colors.front(), reversed.colors.back());
     for (const PublishedColor& c : p.colors) {
-      // Where its own table has a colour, the map has it: at even steps, or by category.
+      // At each colour of its table, at even steps or by category, the map has that colour.
       ScalarMapping m{.map = map, .range = ScalarRange{0, static_cast<double>(p.count - 1)}};
       if (map.discrete) {
         ASSERT_EQ(map.colors.size(), static_cast<std::size_t>(p.count));
         m.range = ScalarRange{-0.5, p.count - 0.5};
       }
       const Vec4 got = ScalarColors(m, {})(c.place);
-      // To the nearest of 8 bits, and 1/65535 of how they are written here.
+      // To the nearest of 8 bits, and 1/65535 for this table's notation.
       const double within = 0.51 / 255;
       ASSERT_NEAR(got.x, c.r / 65535.0, within) << c.place;
       ASSERT_NEAR(got.y, c.g / 65535.0, within) << c.place;
@@ -99,7 +99,7 @@ TEST(ScalarColors, BlendsBetweenEvenSteps) {
   EXPECT_NEAR(red(c, 1), 0.7, 1e-7);
 }
 
-// In exact arithmetic the same formula, over generated maps and ranges.
+// The formula in exact arithmetic, over generated maps and ranges.
 TEST(ScalarColors, AreAFloat64Formula) {
   Random random(17);
   for (int n = 0; n < 20000; ++n) {
@@ -125,7 +125,7 @@ TEST(ScalarColors, AreAFloat64Formula) {
 }
 
 TEST(ScalarColors, OfDiscreteSteps) {
-  // A boundary belongs to the bin above it, but for the last.
+  // A boundary belongs to the bin above, except the last one.
   const ScalarColors c({.map = tenths({0, 10}), .range = ScalarRange{0, 4}, .steps = 4}, {});
   ASSERT_EQ(c.colors().size(), 4U);
   EXPECT_TRUE(c.is_discrete());
@@ -135,7 +135,7 @@ TEST(ScalarColors, OfDiscreteSteps) {
     EXPECT_FLOAT_EQ(red(c, i + 0.999), bins[i]);
   }
   EXPECT_EQ(red(c, 4), 1);
-  // A discrete map has its own colours, again from the first where there are too few.
+  // A discrete map repeats its colours if there are too few.
   const ScalarColors own({.map = tenths({1, 2, 3}, true), .range = ScalarRange{0, 1}, .steps = 5},
                          {});
   expect_reds(own, {{0.7, 0.1F}, {0.9, 0.2F}});

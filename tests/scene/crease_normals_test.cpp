@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// crease_normals against its definition, written once more without its tables.
+// crease_normals against a plain version of its definition, without tables.
 #include <rastrum/mesh.hpp>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ void expect_near(Vec3 actual, Vec3 expected) {
       << expected.y << " " << expected.z;
 }
 
-/// A closed prism of n sides along z, of radius 1, without its ends, as a soup.
+/// A prism of n sides along z, with radius 1, with or without its ends, as a soup.
 std::vector<Vec3> prism(int n, bool ends) {
   std::vector<Vec3> soup;
   const auto at = [&](int i, float z) {
@@ -51,8 +51,8 @@ std::vector<Vec3> prism(int n, bool ends) {
   return soup;
 }
 
-/// The definition, point by point: of the faces of an area around one, neighbours in the order of
-/// (end, face) that share an end are one group where their angle allows it.
+/// The definition, point by point: of the faces with area around a point, neighbours in the order
+/// (end, face) that share an end are one group if their angle allows it.
 Attribute<Vec3> plain_crease_normals(const std::vector<Vec3>& positions,
                                      const std::vector<std::uint32_t>& indices, double degrees) {
   const double cosine = sin_cos_degrees(degrees).cos;
@@ -108,8 +108,8 @@ Attribute<Vec3> plain_crease_normals(const std::vector<Vec3>& positions,
   return normals;
 }
 
-/// A sheet of n² rough quads, some of whose triangles are turned round, doubled, left out or
-/// without an area, and whose vertices are shared or not.
+/// A sheet of n² rough quads. Some triangles are flipped, doubled, missing or without area;
+/// vertices are shared or not.
 void rough_sheet(std::uint32_t n, std::uint32_t seed, std::vector<Vec3>& positions,
                  std::vector<std::uint32_t>& indices) {
   std::mt19937 random(seed);
@@ -186,7 +186,7 @@ TEST(CreaseNormals, KeepTheRimOfACylinderAndSmoothItsSide) {
         expect_near(normal, {0, 0, t % 4 == 2 ? 1.0F : -1.0F});
       }
     }
-  // One value for what is shared: two at each point of a rim, one at each end, one of none.
+  // Values are shared: two at each point of a rim, one at each end, and one for no normal.
   EXPECT_EQ(n.values.size(), 4 * kSides + 2 + 1U);
 }
 
@@ -201,7 +201,7 @@ TEST(CreaseNormals, TheAngleDecides) {
 }
 
 TEST(CreaseNormals, AGroupReachesRoundATip) {
-  // Neighbours of a pyramid's tip with 8 sides are 41° apart, opposite ones 114°.
+  // With 8 sides, neighbours at a pyramid's tip are 41° apart, opposite ones 114°.
   Mesh tip;
   tip.positions.push_back({0, 0, 0.7F});
   for (int i = 0; i < 8; ++i) {

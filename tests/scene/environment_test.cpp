@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Environments: what they gather and mirror, against integrals in float64 over the picture.
+// Environments: what surfaces gather and mirror, against float64 integrals over the picture.
 #include <rastrum/environment.hpp>
 
 #include <algorithm>
@@ -50,7 +50,7 @@ double gathered(const environment_detail::Gathered& g, int c, Vec3d n) {
          s[3] * n.x * n.y + s[4] * n.y * n.z + s[5] * n.z * n.x;
 }
 
-// A picture that is a polynomial of degree 2 has no other bands, so a surface gathers exactly ∫ L
+// A picture that is a polynomial of degree 2 has no higher bands, so a surface gathers exactly ∫ L
 // max(n·w, 0) dw / π: 1, 2/3 and 1/4 of its bands.
 TEST(Environments, GatherTheCosineIntegralOfSmoothPictures) {
   if (test::test_share() < 100) GTEST_SKIP() << test::kOnlyWhole;
@@ -106,7 +106,8 @@ TEST(Environments, BlurByTheFacetsOfARoughness) {
       const double seen = environment.data().map.at(Vec3(n), static_cast<float>(roughness)).x;
       worst = std::max(worst, std::abs(seen - sum / weight) / std::max(1.0, sum / weight));
     }
-    // Lamps with sharp edges in lobes of a few degrees; then 128² texels are about one apart.
+    // Lamps with sharp edges in lobes of a few degrees, where 128² texels are about one degree
+    // apart.
     EXPECT_LT(worst, level == 2 ? 0.06 : 0.01) << "level " << level;
   }
 }
@@ -125,7 +126,7 @@ TEST(Environments, KeepWhatIsConstant) {
 TEST(Environments, HaveNoSeams) {
   const Environment environment(small_environment(BuiltinEnvironment::sky).view());
   const EnvironmentMap& map = environment.data().map;
-  // Across the fold at y = 0 and across the edges below, where the four flaps meet.
+  // Across the fold at y = 0, and across the edges below, where the four flaps meet.
   for (int i = 0; i < 400; ++i) {
     const double a = 2 * kPi * i / 400;
     for (const float roughness : {0.5F, 1.0F}) {
@@ -167,7 +168,7 @@ TEST(Environments, ThatCannotBeAreRefused) {
   }
 }
 
-// No direction, and none that a float could hold, is a place in memory that is not there.
+// Directions that are zero or not finite must not read out of bounds.
 TEST(Environments, AreBlackWhereThereIsNoDirection) {
   const Environment environment(picture_of(4, [](Vec3d) { return Vec3{1, 1, 1}; }).view());
   constexpr float kInf = std::numeric_limits<float>::infinity();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// fit_picture against what it promises: all is seen, and nothing could be
-// larger.
+// fit_picture shows everything, as large as possible.
 #include <rastrum/fit.hpp>
 
 #include <algorithm>
@@ -31,7 +30,7 @@ Scene scene_of(Mesh mesh, const Mat4d& placed = Mat4d::identity()) {
   return scene;
 }
 
-/// The scene in NDC: what of the picture it takes, −1 to 1.
+/// The scene's extent in NDC, −1 to 1.
 struct Box {
   double x0 = 9, x1 = -9, y0 = 9, y1 = -9, z0 = 9, z1 = -9;
 };
@@ -50,7 +49,7 @@ void add_projected(Box& b, const Scene& scene, const Camera& camera, Size size) 
   }
 }
 
-/// Wholly inside with this share of one side taken and equal margins at both.
+/// Expects that all is inside, that this share of one side is filled, and that margins are equal.
 void expect_filled(const Box& b, double fill = kUsual) {
   constexpr double kTolerance = 2e-5;
   EXPECT_NEAR(std::max(b.x1, b.y1), fill, kTolerance);
@@ -138,7 +137,7 @@ TEST(FitPicture, IsLargerThanTheSphereInAWidePicture) {
 }
 
 TEST(FitPicture, WideFieldsKeepOffTheNearestVertex) {
-  // A spike towards the eye: what fits its base between the planes would stand inside of it.
+  // A spike towards the eye: the nearest eye for its base would be inside of it.
   Mesh spike{.positions = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}, {0, 0, 20}},
              .indices = {0, 1, 3, 1, 2, 3, 2, 0, 3}};
   const Scene scene = scene_of(spike);
@@ -184,7 +183,7 @@ TEST(FitPicture, RefusesWhatNoPictureHas) {
   Scene broken = scene_of(shapes::boxes(1));
   broken.meshes[0].indices[0] = 99;
   EXPECT_THROW(static_cast<void>(fit_picture(SceneBinding(broken).view(), {}, 5, 5)), Error);
-  // Three balls, and radii for two.
+  // Three balls, but radii for two.
   const std::vector<Vec3> centers(3);
   const std::vector<float> radii(2, 1.0F);
   const SpheresView spheres{.centers = centers, .radii = radii};
@@ -216,7 +215,7 @@ TEST(FitPicture, OneCameraServesEveryAngle) {
         }
         SCOPED_TRACE(testing::Message() << size.width << "x" << size.height << " ortho "
                                         << orthographic << " eye " << eye.x << "," << eye.y);
-        // As many angles as that come close to what a full turn sweeps over.
+        // This many angles come close to the sweep of a full turn.
         EXPECT_NEAR(std::max(all.x1, all.y1), kUsual, 2e-3);
         EXPECT_LE(std::max(all.x1, all.y1), kUsual + 2e-5);
         EXPECT_NEAR(all.x0, -all.x1, 2e-3);

@@ -28,7 +28,7 @@ TEST(MarchingCubes, EveryCaseUsesItsCrossedEdgesAndNoOther) {
 }
 
 TEST(Gyroid, IsWatertightInside) {
-  // Coarse grids reach all the ambiguous cases, fine ones the surface.
+  // Coarse grids reach all ambiguous cases, fine ones the surface.
   for (const auto& [cells, periods] :
        {std::pair{2, 1.3F}, {3, 2.0F}, {5, 3.7F}, {9, 8.0F}, {16, 13.0F}, {40, 2.0F}, {64, 2.0F}}) {
     const Mesh mesh = shapes::gyroid(cells, periods);
@@ -77,8 +77,8 @@ TEST(Gyroid, LiesOnTheSurfaceWithItsNormals) {
 }
 
 TEST(Gyroid, HasTheAreaOfTheMinimalSurface) {
-  // 3.0915 a² per cubic period a (Schoen's surface); the nodal approximation differs by far less
-  // than the tolerance. Two periods: 8 cells of edge 1.
+  // The area is 3.0915 a² per cubic period a (Schoen's surface); the nodal approximation differs by
+  // far less than the tolerance. Two periods: 8 cells of edge 1.
   EXPECT_NEAR(area(shapes::gyroid(96, 2)), 8 * 3.0915, 0.1);
 }
 

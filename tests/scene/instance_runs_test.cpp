@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Instances that are alike are drawn as one run (scene/instance_runs.hpp). A scene whose instances
-// view arrays of their own, with the same numbers in them, has no runs: its pictures, outputs,
-// counts, picks and refusals are the same, bit for bit.
+// Equal instances are drawn as one run (scene/instance_runs.hpp). A twin scene, whose instances
+// view their own arrays with the same numbers, has no runs. Its pictures, outputs, counts, picks
+// and refusals must be equal, bit for bit.
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -34,7 +34,7 @@ struct Arrays {
   std::vector<Vec3d> wide;
   std::vector<Vec3> soup;
   std::vector<Vec4> soup_colors;
-  std::vector<std::uint32_t> mirrored;  ///< a normal's place for each corner
+  std::vector<std::uint32_t> mirrored;  ///< a normal's index for each corner
 
   explicit Arrays(int n) : sheet(n), wide(sheet.positions.begin(), sheet.positions.end()) {
     for (const std::uint32_t i : sheet.indices) {
@@ -89,14 +89,14 @@ struct Scene {
   [[nodiscard]] SceneView view() const { return {instances, materials, {}}; }
 };
 
-/// The scene of a seed, in runs, and its twin without one.
+/// A seed's scene with runs, and its twin without.
 struct Twins {
   std::list<Arrays> arrays;
   std::list<MeshView> meshes;
   std::vector<Vec3> centers{{0.1F, 0.2F, 0.3F}, {-0.4F, 0.1F, 0.2F}};
   SpheresView spheres{.centers = centers, .radius = 0.2F};
   Scene joined, apart;
-  std::size_t in_runs = 0;  ///< instances that some run joins to the one before
+  std::size_t in_runs = 0;  ///< instances that a run joins to the one before
 
   explicit Twins(std::uint64_t seed) {
     Dice random(seed);
@@ -146,7 +146,7 @@ struct Twins {
     }
   }
 
-  /// Small ones mostly; some large, some behind the eye, some mirrored or flat.
+  /// Mostly small; some large, behind the eye, mirrored or flat.
   static Mat4d placed(Dice& random) {
     Mat4d m = Mat4d::identity();
     const double size = random.below(9) == 0 ? 1.5 : random.real(0.05, 0.4);
@@ -195,7 +195,7 @@ Pictures draw(Renderer& renderer, const Scene& scene, FrameOptions look) {
 
 template <class T>
 void expect_same(const Image<T>& a, const Image<T>& b, const char* what) {
-  // By their bytes: −0 is not 0, and a NaN is what it is.
+  // Compares bytes: −0 differs from 0, and NaNs must be identical.
   EXPECT_TRUE(std::memcmp(a.pixels().data(), b.pixels().data(), a.pixels().size_bytes()) == 0)
       << what;
 }
@@ -335,7 +335,7 @@ TEST(InstanceRuns, HoldWhatIsAlikeAndNothingElse) {
     return r;
   };
   using Lengths = std::vector<std::size_t>;
-  // Views are alike where they are equal; they need not be the same.
+  // Equal views are alike; they need not be the same object.
   const MeshView mesh = one.view(0), twin = mesh, elsewhere = other.view(0), second = one.view(2);
   const SpheresView spheres{};
   std::vector<InstanceView> list(6, InstanceView{.geometry = mesh});

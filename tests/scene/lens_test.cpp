@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cameras that others describe, against their own formulas in float64.
+// Cameras in others' conventions, against their formulas in float64.
 #include <cmath>
 #include <vector>
 
@@ -23,7 +23,7 @@ constexpr int kWidth = 641, kHeight = 480;
 struct Seen {
   double x, y, depth, w;  ///< px from the top left corner, reversed depth
 };
-/// By float64 rows, as the renderer's float32 ones would have it before snapping.
+/// In float64, as the renderer's float32 rows have it before snapping.
 Seen see(const Camera& camera, Vec3d p, int width = kWidth, int height = kHeight) {
   const Clip c = clip_of(world_to_clip(camera, width, height), p);
   return {(c.x / c.w + 1) / 2 * width, (1 - c.y / c.w) / 2 * height, c.z / c.w, c.w};
@@ -40,7 +40,7 @@ Mat4d random_pose(Random& r, double reach) {
 TEST(Lens, OpenCvSeesAPointWhereItsFormulaSays) {
   Random r(1);
   for (int n = 0; n < 2000; ++n) {
-    // Up to where coordinates have seven digits before the point.
+    // Up to coordinates of seven digits.
     const double reach = n % 2 == 0 ? 10 : 5e6;
     const Mat4d pose = random_pose(r, reach);
     const Intrinsics k{r.real(200, 2000), r.real(200, 2000), r.real(-200, 900),
@@ -56,7 +56,7 @@ TEST(Lens, OpenCvSeesAPointWhereItsFormulaSays) {
     ASSERT_NEAR(s.y, v + 0.5 - k.first_centre, kSnap) << n;
     ASSERT_NEAR(s.depth, 0.25 / p.z, 1e-6);
     ASSERT_NEAR(view_distance(camera, static_cast<float>(s.depth)), p.z, 1e-5 * p.z);
-    // The axes that are read off the matrix are the pose's, with y and z turned.
+    // The axes from the matrix are the pose's, with y and z negated.
     const Mat4d axes = world_to_camera(camera);
     const Vec3d c = place_of(axes, world);
     expect_near(c, {p.x, -p.y, -p.z}, 1e-6);

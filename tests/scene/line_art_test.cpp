@@ -45,7 +45,7 @@ TEST(LineArt, NormalsBeginAtTheVerticesAndHaveTheLength) {
     ASSERT_EQ(lines.size(), 2 * (own_normals ? sphere.positions.size() : sphere.triangle_count()));
     for (std::size_t i = 0; i < lines.size(); i += 2) {
       EXPECT_NEAR(length(lines[i + 1] - lines[i]), 0.25F, 1e-5F);
-      // Outwards.
+      // Outward.
       EXPECT_GT(dot(lines[i + 1] - lines[i], lines[i]), 0.2F * length(lines[i]));
     }
   }
@@ -55,7 +55,7 @@ TEST(LineArt, NormalsWithIndicesOfTheirOwnAreDrawnAtTheCorners) {
   Mesh m{.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, .indices = {0, 1, 2}};
   m.normals.values = {{0, 0, 2}, {0, 0, 0}};
   m.normals.indices = {0, 1, 0};
-  // The corner whose normal has no direction is left out.
+  // A corner with a zero normal has no line.
   EXPECT_EQ(normal_lines(m.view(), 3),
             (std::vector<Vec3>{{0, 0, 0}, {0, 0, 3}, {0, 1, 0}, {0, 1, 3}}));
   m.normals.indices = {0, 1, 2};

@@ -30,7 +30,7 @@ inline Vec3 position_at(const Mesh& mesh, std::size_t corner) {
 }
 
 struct EdgeUse {
-  int forward = 0, backward = 0;  ///< triangles that pass the edge from the smaller index on, back
+  int forward = 0, backward = 0;  ///< uses from the smaller index on, and back
 };
 using EdgeUses = std::map<std::pair<std::uint32_t, std::uint32_t>, EdgeUse>;
 
@@ -45,7 +45,7 @@ inline EdgeUses edge_uses(const Mesh& mesh) {
   return uses;
 }
 
-/// Every edge has two triangles, which pass it in opposite directions.
+/// Whether every edge has two triangles, which use it in opposite directions.
 inline bool is_closed_and_oriented(const Mesh& mesh) {
   for (const auto& [edge, use] : edge_uses(mesh))
     if (use.forward != 1 || use.backward != 1 || edge.first == edge.second) return false;
@@ -57,7 +57,7 @@ inline Vec3 face_normal(const Mesh& mesh, std::size_t triangle) {
   return cross(position_at(mesh, 3 * triangle + 1) - a, position_at(mesh, 3 * triangle + 2) - a);
 }
 
-/// Positive where a closed mesh faces outward.
+/// Positive if a closed mesh faces outward.
 inline double signed_volume(const Mesh& mesh) {
   double volume = 0;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
@@ -84,7 +84,7 @@ inline Box box_of(const Mesh& mesh) {
   return box;
 }
 
-/// Within a triangle texture coordinates differ by one of `steps` at most, across a seam, too.
+/// Expects that texture coordinates differ by at most `steps` within a triangle, also at a seam.
 inline void expect_no_seam(const Mesh& mesh, Vec2 steps) {
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t)
     for (std::size_t c = 0; c < 3; ++c) {

@@ -77,7 +77,7 @@ TEST(Bounds, OfNothingHaveNoVertices) {
   EXPECT_EQ(bounds(SceneBinding(scene).view()).vertices_in_use, 0U);
 }
 
-/// `--fit` written once more from the issue.
+/// A second version of `--fit`'s definition.
 void expect_fitted(const Camera& c, Vec3 centre, double r, double fov, bool orthographic) {
   const double distance = r / std::sin(fov / 2);
   const double tolerance = 1e-5 * (distance + static_cast<double>(length(centre)));
@@ -200,7 +200,8 @@ TEST(VertexNormals, OfASpherePointOutward) {
   for (std::size_t i = 0; i < n.size(); ++i) EXPECT_GT(dot(n[i], mesh.positions[i]), 0.999F);
 }
 
-/// A scene of two meshes, `materials` materials and `textures` textures, all marked by `mark`.
+/// A scene of two meshes, `materials` materials and `textures` textures, whose values all contain
+/// `mark`.
 Scene marked_scene(float mark, std::size_t materials, std::size_t textures) {
   Scene s;
   for (int i = 0; i < 2; ++i) s.meshes.push_back(shapes::boxes(1));
@@ -287,8 +288,8 @@ TEST(SceneAppend, ShiftsTheMaterialsOfInstances) {
   EXPECT_FALSE(a.instances[3].material);
 }
 
-// Without materials an instance's colour is what is seen: a plain material must not darken it, and
-// the one that an instance names does not exist.
+// Without materials an instance's colour shows directly. Appending must not darken it by a plain
+// material, and the material that an instance names does not exist.
 TEST(SceneAppend, ColoursOfInstancesWithoutMaterialsStay) {
   Scene a = marked_scene(0.25F, 0, 0);
   a.instances[0].color = Vec4{0, 1, 0, 0.5F};
@@ -302,7 +303,8 @@ TEST(SceneAppend, ColoursOfInstancesWithoutMaterialsStay) {
 }
 
 TEST(SceneAppend, FilesWithoutMaterialsLookAsTheyDid) {
-  // First without, then with materials: the first file's meshes must not take the second's.
+  // First without, then with materials: the first file's meshes must not get the second's
+  // materials.
   Scene a = marked_scene(0.25F, 0, 0);
   a.append(marked_scene(0.5F, 2, 1));
   ASSERT_EQ(a.materials.size(), 3U);
@@ -319,7 +321,7 @@ TEST(SceneAppend, FilesWithoutMaterialsLookAsTheyDid) {
   c.append(marked_scene(0.5F, 0, 0));
   EXPECT_TRUE(c.materials.empty());
 
-  // Meshes of one file keep the colours that they have; the others get the plain shaders' colour.
+  // Meshes of a file keep their own colours; the others get the plain shaders' colour.
   Scene d = marked_scene(0.25F, 0, 0);
   d.meshes[1].colors.values.assign(d.meshes[1].positions.size(), {0, 1, 0, 0.5F});
   d.append(marked_scene(0.5F, 1, 0));

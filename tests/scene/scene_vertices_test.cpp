@@ -20,7 +20,7 @@
 namespace rastrum::test::scene_vertices_test {
 namespace {
 
-/// The first of those that lie farthest along x, for VerticesInUse::reduce.
+/// The first of the farthest vertices along x, for VerticesInUse::reduce.
 struct FirstFarthest {
   double x = -std::numeric_limits<double>::infinity();
   Vec3d at;
@@ -35,8 +35,8 @@ struct FirstFarthest {
   }
 };
 
-/// Vertices in a lattice, so that many lie equally far; of one in eight no triangle is made, and
-/// one in fifty is no number.
+/// Vertices in a lattice, so that many are equally far. One in eight has no triangle, and one in
+/// fifty is NaN.
 struct Vertices {
   std::vector<Vec3> positions;
   std::vector<std::uint32_t> indices;
@@ -54,7 +54,7 @@ Vertices vertices(std::size_t count, std::uint32_t seed) {
   return made;
 }
 
-/// The scene's vertices that a fit looks at, in their order.
+/// The vertices that a fit reads, in order.
 std::vector<Vec3d> in_order(const SceneView& scene) {
   std::vector<Vec3d> all;
   const auto add = [&](const InstanceView& instance, const Vec3d& p) {
@@ -81,7 +81,7 @@ TEST(SceneVertices, FindWhatAllVerticesHave) {
   MeshView whole, part;
   whole.positions = a.positions;
   whole.indices = a.indices;
-  part = whole;  // of the same memory
+  part = whole;  // in the same memory
   part.indices = std::span(a.indices).first(300);
   PointsView points{.positions = b.positions};
   const Mat4d turned = translation({0.3, -20, 4}) * rotation(rotation_about({1, 2, 3}, 0.7));
@@ -114,8 +114,8 @@ TEST(SceneVertices, FindWhatAllVerticesHave) {
     }
 }
 
-/// Runs that cannot change what is sought are not read: a fit of a million instances would else
-/// cost a second a pass.
+/// Runs that cannot change the result are not read. Otherwise a fit of a million instances would
+/// cost a second per pass.
 TEST(SceneVertices, MostRunsStayUnread) {
   class Counted final : public FitVertices {
    public:

@@ -17,8 +17,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Every normal is a unit vector on the front side of its triangle's plane (up to the curvature of
-/// a triangle), and every index is in range.
+/// Expects valid indices, and unit normals on the front of their triangles' planes (up to a
+/// triangle's curvature).
 void expect_sound(const Mesh& mesh) {
   ASSERT_EQ(mesh.indices.size() % 3, 0U);
   for (std::size_t corner = 0; corner < 3 * mesh.triangle_count(); ++corner) {
@@ -93,7 +93,7 @@ TEST(Boxes, AreClosedAndHaveTheirVolume) {
 }
 
 TEST(Teapot, DataAreNewells) {
-  // Points of the usual listing of 306 (Crow 1987), by their numbers there.
+  // Points of the usual listing of 306 (Crow 1987), with their numbers there.
   const auto patches = shapes::teapot_patches();
   std::map<std::tuple<double, double, double>, int> points;
   for (const auto& patch : patches)
@@ -106,7 +106,7 @@ TEST(Teapot, DataAreNewells) {
   EXPECT_TRUE(has(3.525, 0.25, 2.49375));      // 198
   EXPECT_TRUE(has(0.45, -0.8, 3.15));          // 209
   EXPECT_TRUE(has(0.798, -1.425, 0));          // 305
-  // 306 less 4 that no patch uses and 12 on the bottom's rim that are listed twice.
+  // 306 without 4 that no patch uses and 12 on the bottom's rim that are listed twice.
   EXPECT_EQ(points.size(), 290U);
   double low = INFINITY, high = -INFINITY;
   for (const auto& [p, uses] : points) {
@@ -128,14 +128,14 @@ TEST(Teapot, HasItsSizeAndFacesOutward) {
   EXPECT_EQ(box.max.y, 3.15F);
   EXPECT_EQ(box.min.z, -2.0F);
   EXPECT_EQ(box.max.z, 2.0F);
-  // The pot, its lid and bottom enclose the body but for the gap of the lid; the profile's own
-  // volume of revolution says how much (0.56 makes circles to within 0.3 %).
+  // The pot, its lid and bottom enclose the body but for the lid's gap. The volume is that of the
+  // profile's revolution (0.56 makes circles to within 0.3 %).
   EXPECT_NEAR(signed_volume(shapes::teapot(64)), 25.93, 0.05);
 }
 
 TEST(Teapot, PatchesMeetWithoutACrack) {
-  // Glued by equal position bits, the only open edges are those the teapot has by design: the rim
-  // with its lid, the ends of handle and spout.
+  // With equal positions merged, the only open edges are the teapot's by design: the rim with its
+  // lid, the ends of handle and spout.
   for (const int n : {3, 7, 16}) {
     const Mesh mesh = shapes::teapot(n);
     std::map<std::tuple<float, float, float>, std::uint32_t> ids;
@@ -167,7 +167,7 @@ TEST(Hairball, IsMadeOfRibbonsInTheUnitBall) {
   for (const Vec3 p : mesh.positions) EXPECT_LE(length(p), 1.000001F);
   for (std::size_t v = 0; v < mesh.positions.size(); v += 2)
     EXPECT_NEAR(length(mesh.positions[v + 1] - mesh.positions[v]), 0.01, 1e-6);
-  // Strands do not depend on how many there are, seeds do matter.
+  // A strand does not depend on the number of strands, but on the seed.
   const Mesh fewer = shapes::hairball(7, 40, 0.01F, 3);
   EXPECT_EQ(std::memcmp(fewer.positions.data(), mesh.positions.data(),
                         fewer.positions.size() * sizeof(Vec3)),
@@ -207,7 +207,7 @@ TEST(Shapes, AreTheSameEveryTime) {
 }
 
 TEST(Shapes, RandomNumbersAreFixedForever) {
-  // Written down so that a change of the generator, which would change every picture, is seen.
+  // Pinned, because a change of the generator would change every picture.
   const auto expect = [](Vec3 p, Vec3 q) { EXPECT_LT(length(p - q), 1e-6F); };
   expect(shapes::soup(1).positions[0], {-0.208649814F, 0.0785896778F, -0.557197332F});
   expect(shapes::hairball(1, 1).positions[3], {0.336357236F, 0.938907027F, 0.0626000389F});

@@ -47,7 +47,7 @@ TEST(Spec, CatalogueListsWhatFromSpecKnows) {
   EXPECT_EQ(infos.size(), 11U);
   for (const shapes::ShapeInfo& info : infos) {
     EXPECT_FALSE(info.description.empty());
-    // The listed parameters with their defaults are themselves a specification.
+    // The listed parameters with their defaults are a valid specification.
     const Scene scene = shapes::scene_from_spec(info.name + "?" + info.parameters);
     const Scene plain = shapes::scene_from_spec(info.name);
     ASSERT_EQ(scene.instances.size(), 1U);

@@ -32,7 +32,7 @@ TEST(Subdivide, KeepsAreaBoundsAndClosedness) {
 }
 
 TEST(Subdivide, SharesMidpoints) {
-  // Euler: V − E + F stays 2 on a sphere, so the new vertices are exactly its edges.
+  // Euler: V − E + F stays 2 on a sphere, so there is one new vertex per edge.
   const Mesh mesh = shapes::sphere(10, 20);
   const Mesh fine = shapes::subdivide(mesh, 1);
   EXPECT_EQ(fine.positions.size(), mesh.positions.size() + edge_uses(mesh).size());
@@ -127,7 +127,7 @@ TEST(Subdivide, SplitsScalars) {
   const Mesh out = shapes::subdivide(m, 1);
   ASSERT_EQ(out.positions.size(), 6U);
   ASSERT_EQ(out.scalars[0].values.size(), 6U);
-  // At a corner of a triangle both have the same number.
+  // At a triangle's corner both have the same number.
   for (std::size_t c = 0; c < 12; ++c)
     EXPECT_EQ(out.scalars[1].values.at(c), out.scalars[0].values.at(out.indices[c])) << c;
   EXPECT_EQ(out.scalars[2].values, (std::vector<double>{7, 7, 7, 7}));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Views by name and angle: where the eye stands, what is up, and how large the picture is.
+// Views by name and angle: the eye's place, the up direction, and the picture's size.
 #include <cmath>
 #include <limits>
 
@@ -62,7 +62,7 @@ TEST(Views, Turn) {
   expect_view(turned(front, {0, 90, 0}), {0, 1, 0}, {0, 0, -1});
   expect_view(turned(front, {0, -90, 0}), {0, -1, 0}, {0, 0, 1});
   expect_view(turned(front, {90, 90, 0}), {0, 1, 0}, {-1, 0, 0});
-  // The picture turns counter-clockwise: what was up goes to the left.
+  // The picture turns counter-clockwise: up becomes left.
   expect_view(turned(front, {0, 0, 90}), {0, 0, 1}, {1, 0, 0});
   const View a = turned(front, {0, 30, 0});
   expect_near(a.direction, {0, -0.5, -std::sqrt(0.75)}, 1e-15);

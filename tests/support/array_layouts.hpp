@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One mesh in many memories: the arrays that a test's layouts view, which lie here.
+// One mesh in many memory layouts.
 #pragma once
 
 #include <cstddef>
@@ -17,8 +17,8 @@
 
 namespace rastrum::test {
 
-/// A wavy sheet of n × n quads with normals, texture coordinates, colours of whole 255ths, and two
-/// materials of its faces. `indices` are its quads as triangles.
+/// A wavy sheet of n × n quads with normals, texture coordinates, colours in 255ths, and two
+/// materials. `indices` are its quads as triangles.
 struct Sheet {
   int n;
   std::vector<Vec3> positions, normals;
@@ -60,11 +60,11 @@ struct Sheet {
   }
 };
 
-/// Memory of a layout: bytes that start at no round address.
+/// Memory of a layout: bytes at odd addresses.
 class Memory {
  public:
-  /// `count` values of `bytes` bytes, every `stride` bytes, behind `offset` bytes; a negative
-  /// stride begins at the end. Returns where the first lies.
+  /// Stores `count` values of `bytes` bytes, every `stride` bytes, after `offset` bytes. A negative
+  /// stride begins at the end. Returns where the first one is.
   template <class C>
   const C* put(const C* values, int channels, std::size_t count, std::ptrdiff_t stride,
                std::size_t offset = 0) {
@@ -78,7 +78,7 @@ class Memory {
                   values + i * static_cast<std::size_t>(channels), value);
     return static_cast<const C*>(static_cast<const void*>(first));
   }
-  /// They as a view.
+  /// The same as a view.
   template <class T, class C>
   ArrayView<T> view(const C* values, std::size_t count, std::ptrdiff_t stride,
                     std::size_t offset = 0) {
@@ -97,7 +97,7 @@ class Memory {
   std::list<std::vector<std::byte>> bytes_;
 };
 
-/// A layout of a sheet that must give the picture of Sheet::view().
+/// A layout of a sheet whose picture must equal Sheet::view()'s.
 struct Layout {
   std::string name;
   std::function<void(const Sheet&, Memory&, MeshView&)> change;
@@ -119,7 +119,7 @@ Layout indices_of(const char* name, std::ptrdiff_t stride = sizeof(C), std::size
           }};
 }
 
-/// `with_lines`: faces of two corners, which have no triangle, between some.
+/// `with_lines` adds faces of two corners, which have no triangle.
 template <class C>
 Layout polygons(const char* name, bool with_lines) {
   return {name, [=](const Sheet& s, Memory& m, MeshView& v) {
@@ -150,7 +150,7 @@ inline std::vector<double> wide(const std::vector<Vec3>& from) {
 
 }  // namespace layouts_detail
 
-/// Layouts whose pictures have the bits of the packed one, ids too.
+/// Layouts whose pictures and ids equal the packed one's bit for bit.
 inline std::vector<Layout> layouts() {
   using namespace layouts_detail;
   std::vector<Layout> all{indices_of<std::uint16_t>("uint16"),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A mesh whose vertices a function of the caller's own places in clip space.
+// A mesh whose vertices a function places in clip space.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace rastrum::test {
 
-/// x and y as they are, z from −2 to 2 as depths from 0 to 1.
+/// Keeps x and y; maps z from −2 to 2 to depths from 0 to 1.
 class ClipMesh : public raster::VertexSource {
  public:
   explicit ClipMesh(Mesh mesh) : mesh_(indexed(std::move(mesh))) {}

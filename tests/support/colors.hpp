@@ -22,7 +22,7 @@ inline double light(int code) {
   return light_of(code / 255.0);
 }
 
-/// The largest difference of a channel, alpha aside.
+/// The largest difference of a channel, without alpha.
 inline int difference(Rgba8 a, Rgba8 b) {
   return std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)});
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tests of what --device cuda draws, through the façade: on a GPU, or on the CPU where the program
-// has the code for the device compiled for it (tests/CMakeLists.txt).
+// Tests of --device cuda through the façade: on a GPU, or on the CPU if the program contains device
+// code compiled for it (tests/CMakeLists.txt).
 #pragma once
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 
 namespace rastrum::test {
 
-/// Skipped without a device, with words that tests/cuda/CMakeLists.txt looks for.
+/// Skips without a device, with words that tests/cuda/CMakeLists.txt looks for.
 class CudaTest : public testing::Test {
  protected:
   void SetUp() override {

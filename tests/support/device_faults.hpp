@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A call that a device refuses ends with an Error, and nothing else happens. These faults are for
-// the CPU that stands for a device (host_stream.hpp).
+// A refused device call must end in an Error without side effects. These faults are for the CPU
+// that stands in for a device (host_stream.hpp).
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace rastrum::test {
 
-/// The n-th call of this thread that a driver may refuse is refused while it lives.
+/// While it lives, refuses the n-th call of this thread that a driver may refuse.
 class Refused {
  public:
   explicit Refused(std::uint64_t n) { parallel::cuda_system::DeviceFaults::of_thread() = {0, n}; }
@@ -22,9 +22,9 @@ class Refused {
   Refused& operator=(const Refused&) = delete;
 };
 
-/// For n = 1, 2, … `start()`, whose result is used by `use(result)` with the n-th call refused, and
-/// then by `again(result)` with none, until a use goes through; returns how many were refused. A
-/// use that fails must throw an Error that names the device. Ends early with a failure of the test.
+/// For n = 1, 2, … makes `start()`, runs `use(result)` with the n-th call refused, then
+/// `again(result)` with none, until a use succeeds. Returns how many calls were refused. A failing
+/// use must throw an Error that names the device; otherwise the test fails and this returns early.
 template <class Start, class Use, class Again>
 std::uint64_t refuse_each_call(Start&& start, Use&& use, Again&& again) {
   for (std::uint64_t n = 1; n < 3000; ++n) {

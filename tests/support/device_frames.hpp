@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Frames that a device draws, held to the host's, whose bits they have.
+// Compares frames of a device with the host's, bit for bit.
 #pragma once
 
 #include <utility>
@@ -13,7 +13,6 @@
 
 namespace rastrum::test {
 
-/// A scene and how it is looked at.
 struct Viewed {
   explicit Viewed(Scene drawn, const Camera& from = {.eye = {0, 0, 3}})
       : scene(std::move(drawn)), camera(from) {}
@@ -32,28 +31,28 @@ struct Viewed {
   return take(painter, seen.view(), seen.camera);
 }
 
-/// The same by another device.
+/// The same options with another device.
 [[nodiscard]] inline RenderOptions by(RenderOptions options, Device device) {
   options.device = device;
   return options;
 }
 
-/// All bits and counters.
+/// Compares all bits and counters.
 [[nodiscard]] inline testing::AssertionResult same_frame(const Frame& a, const Frame& b) {
   if (auto r = same_images(a, b); !r) return r;
   return same_counts(a.stats, b.stats);
 }
-/// The same, of a frame that a device has drawn.
+/// The same, and expects that a device has drawn the frame.
 inline void expect_by_device(const Frame& frame, const Frame& expected) {
   EXPECT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
   EXPECT_TRUE(same_frame(frame, expected));
 }
-/// All bits and how many layers there are.
+/// Compares all bits and the number of layers.
 inline void expect_by_device(const LayerPicture& frame, const LayerPicture& expected) {
   EXPECT_EQ(frame.stats.device, Device::cuda) << frame.stats.device_why;
   EXPECT_TRUE(same_bits(frame, expected));
   EXPECT_EQ(frame.stats.pixels_covered, expected.stats.pixels_covered);
-  if (expected.stats.device == Device::serial) return;  // which counts none
+  if (expected.stats.device == Device::serial) return;  // serial counts no layers
   for (const char* name : {"translucent fragments", "deepest"})
     EXPECT_EQ(frame.counter(name), expected.counter(name)) << name;
 }

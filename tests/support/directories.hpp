@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where the tests' own files and the shared data lie. The paths are compiled into one file alone,
-// so that a checkout elsewhere compiles the tests to the same objects, which ccache then has.
+// The folders of the tests' own files and of the shared data. Only one file contains the paths, so
+// that other checkouts compile the tests to the same objects, which ccache finds.
 #pragma once
 
 #include <filesystem>

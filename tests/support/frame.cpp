@@ -16,7 +16,7 @@ using testing::AssertionFailure;
 using testing::AssertionResult;
 using testing::AssertionSuccess;
 
-/// The numbers of a pixel, of whichever type.
+/// Calls f for the numbers of a pixel of any type.
 template <class T, class F>
 void for_each_number(const T& pixel, const F& f) {
   if constexpr (std::is_same_v<T, Rgba8>) {

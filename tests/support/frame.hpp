@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The images of one frame, and what differs between two of them.
+// The images of one frame, and the differences between two.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@
 
 namespace rastrum::test {
 
-/// Which images a frame has; what is asked for decides which way it is drawn.
+/// The images of a frame. They decide how the frame is drawn.
 enum ImageKinds : unsigned {
   kColor8 = 1U << 0,
   kColor = 1U << 1,
@@ -60,7 +60,7 @@ struct Frame {
   FrameStats stats;
 
   Frame() = default;
-  /// `kinds`: of ImageKinds. They hold nonsense, so that a pixel which nobody wrote shows.
+  /// `kinds`: of ImageKinds. The images begin with nonsense, so that unwritten pixels show.
   Frame(int width, int height, unsigned kinds);
   [[nodiscard]] Targets targets();
 };
@@ -93,14 +93,14 @@ void for_each_kind(const F& f) {
                          unsigned kinds = kCounted);
 [[nodiscard]] Frame draw(Painter& renderer, std::span<raster::Draw> draws,
                          const raster::Shading& shader, const raster::Testing& test);
-/// By a renderer of its own.
+/// Draws with a renderer of its own.
 [[nodiscard]] Frame draw(const RendererOptions& by, const SceneView& scene, const Camera& camera,
                          const FrameOptions& frame, unsigned kinds = kPicture);
 [[nodiscard]] Frame draw(const RenderOptions& options, const SceneView& scene, const Camera& camera,
                          unsigned kinds = kCounted);
 [[nodiscard]] Frame draw(const RenderOptions& options, const Scene& scene, const Camera& camera);
 
-/// All bits, but for those of a NaN: its sign and payload are the processor's
+/// Compares all bits, except a NaN's sign and payload, which depend on the processor
 /// (docs/conventions.md).
 template <class T>
 [[nodiscard]] bool same_pixel(const T& a, const T& b) {
@@ -119,8 +119,8 @@ template <class T>
   }
 }
 
-/// All pixels of the images of these kinds that one of the two has are the same; the message names
-/// the first one that differs.
+/// Whether all images of these kinds that one of the two has are equal. The message names the first
+/// differing pixel.
 [[nodiscard]] testing::AssertionResult same_images(const Frame& a, const Frame& b,
                                                    unsigned kinds = ~0U);
 /// The images and the counters.
@@ -128,16 +128,16 @@ template <class T>
 /// Ids, depth and overdraw.
 [[nodiscard]] testing::AssertionResult same_surfaces(const Frame& a, const Frame& b);
 [[nodiscard]] testing::AssertionResult same_surfaces(const Frame& a, const OracleImage& b);
-/// With a `tolerance` of 0 all colours, 8 bits and float32, are the same bits. Else no channel of
-/// the 8-bit picture differs by more than `tolerance`.
+/// With `tolerance` 0, compares the bits of all colours, 8 bits and float32. Otherwise no 8-bit
+/// channel may differ by more than `tolerance`.
 [[nodiscard]] testing::AssertionResult same_picture(const Frame& a, const Frame& b, int tolerance);
-/// The counters of the two frames, and within each that they add up.
+/// Compares the counters, and checks that each frame's add up.
 [[nodiscard]] testing::AssertionResult same_counts(const FrameStats& a, const FrameStats& b);
 /// For EveryWay::same, which compares the images itself.
 inline constexpr auto kCountsToo = [](const Frame& got, const Frame& expected) {
   EXPECT_TRUE(same_counts(got.stats, expected.stats));
 };
-/// The same without the fragments, which depend on what is hidden early.
+/// The same without fragments, whose number depends on what is hidden early.
 [[nodiscard]] testing::AssertionResult same_triangles(const FrameStats& a, const FrameStats& b);
 [[nodiscard]] testing::AssertionResult counts_add_up(const Frame& frame);
 /// The counter of that name; a frame without it fails the test.

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Black where the pictures agree; a difference of 1 is already clearly visible.
+// Black where the pictures agree; even a difference of 1 is clearly visible.
 Image<Rgba8> difference(const Image<Rgba8>& a, const Image<Rgba8>& b) {
   const auto amplify = [](int x, int y) {
     const int d = std::abs(x - y);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ground for tests of its light, and what is around it.
+// Terrain and environments for the tests of its light.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ inline constexpr int kMap = 48;
   return 6 + 5 * elementary::sin(x * 0.31) * elementary::cos(y * 0.23) + 0.04 * x;
 }
 
-/// Round hills with one hole, under a colour of its own for each cell.
+/// Round hills with one hole; each cell has its own colour.
 [[nodiscard]] inline terrain::HeightMap hills() {
   terrain::HeightMap map{Image<float>(kMap, kMap), Image<Rgba8>(kMap, kMap)};
   for (const auto& [x, y] : pixels(kMap, kMap)) {
@@ -32,8 +32,8 @@ inline constexpr int kMap = 48;
   return map;
 }
 
-/// Red grows to the east, green upwards, blue to the south. Made once: that takes its time, with
-/// 128 rows sixteen times as long.
+/// Red grows to the east, green upwards, blue to the south. Made once because it is slow; with 128
+/// rows it takes sixteen times as long.
 template <int kRows = 32>
 [[nodiscard]] inline const Environment& directions() {
   static const Environment environment([] {

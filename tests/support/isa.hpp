@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// An instruction set that is not there.
+// An instruction set that this machine lacks.
 #pragma once
 
 #include <algorithm>

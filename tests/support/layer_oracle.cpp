@@ -33,8 +33,8 @@ void put_behind(Rgba64& front, const Rgba64& c) {
   front = front + c * (1 - front.a);
 }
 
-/// Sorts the fragments of one sample by their keys and leaves out what the nearest opaque one
-/// hides. Returns whether equal depths had a say in that.
+/// Sorts the fragments of one sample by key and drops those that the nearest opaque one hides.
+/// Returns whether equal depths affected the order.
 bool keep_visible(std::vector<Fragment>& f) {
   std::stable_sort(f.begin(), f.end(),
                    [](const Fragment& a, const Fragment& b) { return a.key > b.key; });
@@ -47,7 +47,7 @@ bool keep_visible(std::vector<Fragment>& f) {
   return tied;
 }
 
-/// The opaque surface stays behind all; of the others the latest is in front.
+/// The opaque surface stays behind; of the others the latest is in front.
 void order_by_submission(std::vector<Fragment>& f) {
   std::stable_sort(f.begin(), f.end(), [](const Fragment& a, const Fragment& b) {
     if (a.opaque != b.opaque) return b.opaque;

@@ -24,7 +24,7 @@ LayerPicture take_with(Painter& renderer, bool with_overdraw, const Render& rend
 
 using Channels = std::array<double, 4>;
 
-/// With the levels that 8 bits have of it, straight.
+/// Straight (not premultiplied), in levels of 8 bits.
 Channels levels(const Rgba64& c) {
   const double scale = c.a > 0 ? 1 / c.a : 1;
   const auto level = [](double v) { return std::nearbyint(std::clamp(v, 0.0, 1.0) * 255); };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Frames of translucent scenes, and what differs between two of them or from the oracle.
+// Frames of translucent scenes, and their differences from each other and from the oracle.
 #pragma once
 
 #include <cstdint>
@@ -15,29 +15,29 @@
 
 namespace rastrum::test {
 
-/// With colours, ids, depth and errors; with overdraw where it is asked for: counting turns
+/// Has colours, ids, depth and errors; overdraw only on request, because counting it turns
 /// hierarchical Z off.
 struct LayerPicture : Frame {
-  /// 0 where there is none of that name.
+  /// 0 if there is none of that name.
   [[nodiscard]] std::uint64_t counter(std::string_view name) const;
   [[nodiscard]] std::uint64_t error_pixels() const;
 };
 
-/// Draws into images that hold nonsense before.
+/// Draws into images that begin with nonsense.
 [[nodiscard]] LayerPicture take(Painter& renderer, LayerProgram& program,
                                 bool with_overdraw = false);
-/// The program's draws by another shader.
+/// The program's draws with another shader.
 [[nodiscard]] LayerPicture take(Painter& renderer, LayerProgram& program,
                                 const raster::BlockShader& shader);
 [[nodiscard]] LayerPicture take(Painter& renderer, const SceneView& scene, const Camera& camera,
                                 bool with_overdraw = false);
 
 /// How far a float32 channel may be from the exact blend of n layers of colours in [0, 1]: (4 n +
-/// 16) · 2⁻²⁴. The light that is left after k layers is a product of k factors, each rounded twice:
-/// 2 k roundings of 2⁻²⁴; a layer's share and its sum are rounded once each, and the shares add up
-/// to 1 at most. So 3 n + 1 roundings bound the whole; 4 n + 16 leaves room for other orders of the
-/// same operations, the colour's interpolation, the background and the mean of the samples. That is
-/// 1e-5 at 38 layers, and less than half a step of 8 bits at 8,000.
+/// 16) · 2⁻²⁴. The transmittance after k layers is a product of k factors, each rounded twice: 2 k
+/// roundings of 2⁻²⁴. A layer's share and its sum are rounded once each, and the shares add up to
+/// at most 1. So 3 n + 1 roundings bound the whole. 4 n + 16 leaves room for other orders of the
+/// operations, the colour's interpolation, the background and the mean of the samples. That is 1e-5
+/// at 38 layers, and less than half a step of 8 bits at 8,000.
 [[nodiscard]] double blend_bound(std::uint32_t layers);
 
 enum class Check {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A LayerScene in the programmable form: its vertices and colours as functions of a
-// Program, its triangles as draws, one for each run of opaque or translucent ones.
+// A LayerScene as a Program: vertices and colours are functions, and each run of opaque or
+// translucent triangles is a draw.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@ class LayerProgram {
       : scene_(scene),
         program_(VertexFunction{this}, ShadeFunction{&scene}, DiscardFunction{&scene}) {
     const Mat4d to_clip_matrix = object_to_clip(scene.camera, Mat4d::identity(), width, height);
-    // A vertex for each corner, so that corners can have colours of their own.
+    // One vertex per corner, so that each corner has its own colour.
     for (const std::uint32_t i : scene.mesh.indices) {
       const ClipVertex c = to_clip(to_clip_matrix, scene.mesh.positions[i]);
       clip_.push_back({static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z),
@@ -38,13 +38,13 @@ class LayerProgram {
           program_.draw(clip_.size(), std::span(corners_).subspan(3 * begin, 3 * (end - begin)));
       draw.flags = scene.holes ? kTested : 0U;
       if (scene.opaque[begin] == 0) draw.flags |= kTranslucent;
-      draw.shading = {};  // tests wrap what shader() is
+      draw.shading = {};  // tests pass shader() themselves
       draw.test = {};
       draws_.push_back(draw);
       begin = end;
     }
   }
-  LayerProgram(const LayerProgram&) = delete;  // the functions point here
+  LayerProgram(const LayerProgram&) = delete;  // the functions hold its address
   LayerProgram& operator=(const LayerProgram&) = delete;
 
   [[nodiscard]] std::span<raster::Draw> draws() { return draws_; }

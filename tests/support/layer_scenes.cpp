@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One function a kind, in the order of the table at the end.
+// One function per kind, in the order of the table at the end.
 #include "tests/support/layer_scenes.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ std::uint64_t mix(std::uint64_t v) {
   return Random(v).bits();
 }
 
-/// The alphas of a scene, so that some are decided by their first layers and others by all.
+/// The alphas of a scene: in some the first layers decide the colour, in others all layers.
 class Alphas {
  public:
   Alphas(Random& r, int layers) : random_(&r), layers_(layers), style_(r.integer(0, 4)) {}
@@ -35,7 +35,7 @@ class Alphas {
         return r.real(0, 1);
       case 1:
         return r.real(0, std::min(1.0, 3.0 / layers_));
-      case 2:  // what draws nothing and what hides all, now and then
+      case 2:  // sometimes invisible or opaque
         return r.chance(0.15) ? 0 : r.chance(0.1) ? 1 : r.real(0, std::min(1.0, 10.0 / layers_));
       case 3:
         return elementary::pow(10.0, r.real(-7, 0));
@@ -53,7 +53,7 @@ struct Maker {
   Random random;
   int width, height, most_fragments;
   LayerScene scene;
-  bool flat = false;  ///< the pixel camera: depth is what is asked for, and w = 1
+  bool flat = false;  ///< the pixel camera: w = 1, and depths are given directly
 
   Maker(std::uint64_t seed, int w, int h, int most)
       : random(seed), width(w), height(h), most_fragments(most) {}
@@ -77,13 +77,13 @@ struct Maker {
     const std::uint32_t i = vertex(a), j = vertex(b), k = vertex(c);
     scene.add(i, j, k, paint, opaque);
   }
-  /// A primitive of the corners that corner() finds, one by one.
+  /// A primitive with the corners that successive calls of corner() return.
   template <class F>
   void triangle_of(const F& corner, Alphas& alpha, bool opaque = false) {
     const Vec3 a = corner(), b = corner(), c = corner();
     triangle(a, b, c, color(opaque ? 1 : alpha()), opaque);
   }
-  /// A triangle whose corners are no further than `size` from a place.
+  /// A triangle whose corners are at most `size` from a place.
   void triangle_about(double x_px, double y_px, double size, Alphas& alpha, bool opaque = false) {
     const auto corner = [&] {
       const double u = x_px + random.real(-size, size), v = y_px + random.real(-size, size);
@@ -99,7 +99,7 @@ struct Maker {
   double x() { return random.real(-0.3 * width, 1.3 * width); }
   double y() { return random.real(-0.3 * height, 1.3 * height); }
   double larger() const { return std::max(width, height); }
-  /// 1 to `most`, few or many alike, and no more than the picture can bear.
+  /// 1 to `most`, evenly over orders of magnitude, limited to the picture's budget.
   int count(int most) {
     const double log_most = elementary::log(static_cast<double>(std::min(most, most_layers())));
     return std::max(1, static_cast<int>(std::lround(elementary::exp(random.real(0, log_most)))));
@@ -117,7 +117,7 @@ struct Maker {
   }
 };
 
-// Large quads through one another, in any position.
+// Large quads in any position that cross each other.
 void crossing_quads(Maker& m) {
   m.look();
   const int n = m.count(60);
@@ -133,7 +133,7 @@ void crossing_quads(Maker& m) {
   }
 }
 
-// Rectangles in few planes: equal depths everywhere, and the first submitted is in front.
+// Rectangles in few planes: depths are equal everywhere, so the first submitted is in front.
 void coplanar(Maker& m) {
   m.look_flat();
   const int n = m.count(200);
@@ -146,8 +146,8 @@ void coplanar(Maker& m) {
   }
 }
 
-// The same sloping triangles again and again, from another corner or the other side. Their planes
-// are equal but for rounding, so that neighbouring pixels differ in who is in front.
+// The same sloping triangles, again and again from another corner or side. Their planes are equal
+// but for rounding, so neighbouring pixels differ in which is in front.
 void repeated(Maker& m) {
   m.look();
   const int n = m.count(300);
@@ -166,7 +166,7 @@ void repeated(Maker& m) {
   }
 }
 
-// Up to 2,000 layers, sloping a little, in no order.
+// Up to 2,000 slightly sloping layers in random order.
 void stack(Maker& m) {
   m.look();
   const int n = m.random.chance(0.3) ? m.count(2000) : std::min(m.count(2000) * 8, 2000);
@@ -183,7 +183,7 @@ void stack(Maker& m) {
   }
 }
 
-// Strands of hair: bands of a pixel or less in width that cross one another.
+// Strands of hair: crossing bands of at most a pixel in width.
 void ribbons(Maker& m) {
   m.look();
   const int n = m.count(60), segments = 16;
@@ -218,7 +218,7 @@ void opaque_between(Maker& m) {
   const int n = m.count(80);
   Alphas alpha(m.random, n / 2 + 1);
   for (int i = 0; i < n; ++i) {
-    const bool opaque = i / 5 % 3 == 1;  // runs, that are draws of their own
+    const bool opaque = i / 5 % 3 == 1;  // runs, which become draws of their own
     const double x = m.x(), y = m.y(), size = m.larger() * m.random.real(0.1, 0.8);
     const bool level = m.random.chance(0.4);
     const double z = m.random.integer(0, 6) / 8.0;
@@ -247,7 +247,7 @@ void near_crossing(Maker& m) {
   }
 }
 
-// Triangles of a pixel and less, in heaps.
+// Heaps of triangles of at most a pixel.
 void micro(Maker& m) {
   m.look();
   const int n = m.random.integer(1, 4000), heaps = m.random.integer(1, 6);
@@ -262,7 +262,7 @@ void micro(Maker& m) {
   }
 }
 
-// Wavy sheets of shared edges, one through the other: a mesh as files have it.
+// Wavy sheets with shared edges that cross each other, like meshes in files.
 void sheets(Maker& m) {
   m.look();
   const int n = std::min(m.count(12), 12), cells = m.random.integer(1, 10);
@@ -293,10 +293,10 @@ void soup(Maker& m) {
   }
 }
 
-// The nasty geometry of scenes.hpp: clipped, degenerate, not finite, nearly edge-on, ….
+// The difficult geometry of scenes.hpp: clipped, degenerate, not finite, nearly edge-on, ….
 void family(Maker& m) {
   GeneratedScene g = generate(m.random.bits() >> 1, m.width, m.height);
-  // Coordinates near FLT_MAX do not pass through a program's float32 clip position.
+  // Coordinates near FLT_MAX overflow a program's float32 clip position.
   while (g.kind == "extreme") g = generate(m.random.bits() >> 1, m.width, m.height);
   m.scene.kind.append("/").append(g.kind);
   m.scene.camera = g.camera;
@@ -400,8 +400,8 @@ LayerScene layer_stack(std::uint64_t seed, int count, double alpha, int width, i
 }
 
 LayerScene overlapping_pieces() {
-  // Found among many. The first corner is beside the guard band, the last barely behind the near
-  // plane: what this cuts off is about a step of the snapping wide, and in the middle of the fan.
+  // Found by a search. The first corner is beside the guard band, the last barely behind the near
+  // plane. They cut off a part that is about a snapping step wide, in the middle of the fan.
   LayerScene scene;
   scene.kind = "overlapping_pieces";
   scene.camera.eye = {0, 0, 0};
@@ -471,7 +471,7 @@ LayerInput LayerQuestion::input() const {
     const auto id = static_cast<std::uint64_t>(t.id);
     if (scene.paint == Paint::triangle) return wide(scene.colors[id]);
     if (scene.paint == Paint::pixel) return wide(scene.pixel_color(id, p.px, p.py));
-    // Linear over the whole triangle, which is what is drawn where w = 1 and nothing clips.
+    // Linear over the whole triangle, as drawn if w = 1 and nothing clips.
     Rgba64 sum;
     const auto area = static_cast<double>(twice_area(t));
     for (std::size_t c = 0; c < 3; ++c) {

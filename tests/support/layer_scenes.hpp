@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Generated scenes for transparency: many layers a pixel, in one order and another, crossing, at
-// equal depths, with opaque surfaces between them. Reproducible from a seed.
+// Generated scenes for transparency: many layers a pixel in various orders, crossing, at equal
+// depths, with opaque surfaces between them. Reproducible from a seed.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace rastrum::test {
 /// How the fragments of a triangle get their colours.
 enum class Paint {
   triangle,  ///< one colour
-  pixel,     ///< LayerScene::pixel_color: another one at each pixel
+  pixel,     ///< LayerScene::pixel_color: a different one at each pixel
   gradient,  ///< linear between the colours of its corners; such scenes have w = 1 everywhere
 };
 
@@ -31,7 +31,7 @@ struct LayerScene {
   Paint paint = Paint::triangle;
   bool holes = false;  ///< is_hole leaves out fragments of every second triangle
 
-  /// Premultiplied. Pure, so that threads may ask.
+  /// Premultiplied. Pure, so that threads may call it.
   [[nodiscard]] Vec4 pixel_color(std::uint64_t id, int x, int y) const;
   [[nodiscard]] bool is_hole(std::uint64_t id, int x, int y) const;
 
@@ -39,24 +39,23 @@ struct LayerScene {
   void add(std::uint32_t a, std::uint32_t b, std::uint32_t c, Vec4 color, bool is_opaque = false);
 };
 
-/// How many kinds there are; `generate_layers` draws kind seed % kLayerKinds.
+/// The number of kinds; `generate_layers` draws kind seed % kLayerKinds.
 extern const int kLayerKinds;
 
-/// To be seen in a `width` × `height` picture: at most 4,000 triangles and about `most_fragments`.
+/// For a `width` × `height` picture: at most 4,000 triangles and about `most_fragments`.
 [[nodiscard]] LayerScene generate_layers(std::uint64_t seed, int width, int height,
                                          int most_fragments = 1000000);
 
-/// `count` quads that fill the picture in planes across the view, at pairwise different depths in
-/// no order. Alphas are about `alpha`.
+/// `count` quads that fill the picture in planes parallel to it, at distinct depths in random
+/// order. Alphas are about `alpha`.
 [[nodiscard]] LayerScene layer_stack(std::uint64_t seed, int count, double alpha, int width,
                                      int height);
 
-/// Translucent clipped triangles whose pieces overlap by a snapped vertex, each over the centre of
-/// a pixel of a 64 × 64 picture.
+/// Translucent clipped triangles whose pieces overlap because of a snapped vertex, each over a
+/// pixel's centre in a 64 × 64 picture.
 [[nodiscard]] LayerScene overlapping_pieces();
 
-/// The oracle's input for a scene: its snapped triangles and the functions of its colours. Holds
-/// references to `scene`.
+/// The oracle's input for a scene: its snapped triangles and colour functions. Refers to `scene`.
 struct LayerQuestion {
   LayerQuestion(const LayerScene& scene, int width, int height, int samples, Vec4 background);
   [[nodiscard]] LayerInput input() const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The formulas of docs/light_rules.md in float64, for tests: what arrives of a light.
+// The formulas of docs/light_rules.md in float64, for tests: the light that arrives at a point.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +34,7 @@ struct Arrived {
   Vec3d to_light;
   Vec3d radiance;
 };
-/// From around: what a direction gathers.
+/// Ambient and hemisphere light: what arrives at a surface with normal d.
 [[nodiscard]] inline std::optional<Vec3d> around(const Light& l, Vec3d d) {
   const Vec3d full = wide(l.color) * l.intensity;
   if (std::holds_alternative<AmbientLight>(l.kind)) return full;
@@ -64,7 +64,7 @@ struct Arrived {
   return {unit(away), full * share};
 }
 
-/// All lights of all sets, each darker.
+/// All lights of all sets, dimmed.
 inline std::vector<Light> all_dimmed(const std::vector<std::vector<Light>>& sets) {
   std::vector<Light> all;
   for (const auto& set : sets)

@@ -23,7 +23,7 @@ inline Rgba8 grey(int code) {
   return {c, c, c, 255};
 }
 
-/// Numbers from a seed, the same everywhere.
+/// Numbers from a seed, the same on every machine.
 class Numbers {
  public:
   std::uint32_t operator()(std::uint32_t below) {
@@ -35,7 +35,7 @@ class Numbers {
   std::uint64_t state_ = 7;
 };
 
-/// Materials of all kinds on triangles of all sizes, every second a mask.
+/// Materials of all kinds on triangles of all sizes; every second one is a mask.
 inline Scene everything() {
   Numbers numbers;
   Scene scene;
@@ -82,8 +82,8 @@ inline Scene everything() {
   return scene;
 }
 
-/// A quad over a whole size² image at `depth`, seen by pixel_camera; texture coordinates `low` at
-/// its top left, `high` at its bottom right.
+/// A quad over a whole size² image at `depth`, for pixel_camera. Texture coordinates go from `low`
+/// at the top left to `high` at the bottom right.
 inline Mesh quad(int size, Vec2 low, Vec2 high, double depth = 0.5) {
   Mesh mesh;
   for (const int corner : {0, 1, 2, 3}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Products with matrices, by their definition, and numbers that are nearly the same.
+// Products with matrices by their definition, and comparisons with a tolerance.
 #pragma once
 
 #include <gtest/gtest.h>

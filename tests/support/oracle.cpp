@@ -12,7 +12,7 @@
 namespace rastrum::test {
 namespace {
 
-// 2⁻¹⁵…2¹⁶ px in n.8. Differences stay below 2²⁵ and their products below 2⁵¹.
+// 2⁻¹⁵…2¹⁶ px in n.8. Differences stay below 2²⁵, their products below 2⁵¹.
 constexpr std::int64_t kGuardMin = -(std::int64_t{1} << 23);
 constexpr std::int64_t kGuardMax = std::int64_t{1} << 24;
 
@@ -20,8 +20,9 @@ std::int64_t sample_fx8(int pixel) {
   return std::int64_t{pixel} * 256 + 128;
 }
 
-// Whether p is on the inner side of the edge a → b of a triangle that turns clockwise on the screen
-// (y down). On the edge itself only a top edge (to the right) or a left edge (upwards) owns p.
+// Whether p is inside the edge a → b of a triangle that is clockwise on the screen (y down). A
+// point on the edge belongs to it only if the edge is a top edge (to the right) or a left edge
+// (upwards).
 bool inside_edge(const SnappedVertex& a, const SnappedVertex& b, std::int64_t x, std::int64_t y) {
   const std::int64_t dx = b.x_fx8 - a.x_fx8;
   const std::int64_t dy = b.y_fx8 - a.y_fx8;
@@ -38,8 +39,8 @@ void require_guard_band(std::span<const SnappedVertex> vertices) {
       throw std::out_of_range("oracle: a vertex outside the guard band");
 }
 
-/// c₀ + c₁ ε + c₂ ε² + … for an infinitesimal ε > 0: exact, and its sign is that of the first
-/// coefficient that is not 0.
+/// c₀ + c₁ ε + c₂ ε² + … for an infinitesimal ε > 0. It is exact: its sign is that of the first
+/// non-zero coefficient.
 class Perturbed {
  public:
   Perturbed(std::int64_t c0 = 0, std::int64_t c1 = 0, std::int64_t c2 = 0) : c_{c0, c1, c2, 0, 0} {}
@@ -66,7 +67,7 @@ class Perturbed {
 
  private:
   __extension__ using Int128 = __int128;
-  static constexpr std::size_t kTerms = 5;  // what a product of two points needs
+  static constexpr std::size_t kTerms = 5;  // enough for a product of two points
   Int128 c_[kTerms];
 };
 
@@ -74,7 +75,7 @@ struct PerturbedPoint {
   Perturbed x, y;
 };
 
-/// The open diamond |x − x_f| + |y − y_f| < 128 about a sample, n.8.
+/// The open diamond |x − x_f| + |y − y_f| < 128 around a sample, n.8.
 struct Diamond {
   std::int64_t x_f, y_f;
 
@@ -84,7 +85,7 @@ struct Diamond {
         if (beyond(p, sx, sy)) return false;
     return true;
   }
-  /// Two convex sets meet unless a line along a side of one of them separates them.
+  /// Two convex sets meet unless a line along a side of one separates them.
   [[nodiscard]] bool meets(const PerturbedPoint& a, const PerturbedPoint& b) const {
     for (const int sx : {-1, 1})
       for (const int sy : {-1, 1})
@@ -238,7 +239,7 @@ float depth_at(const SnappedPrimitive& p, int px, int py) {
 
 namespace {
 
-/// The vertices of a primitive and how far it may reach beyond them, in px.
+/// The vertices of a primitive and how far it reaches beyond them, in px.
 struct Reach {
   std::span<const SnappedVertex> vertices;
   int margin;

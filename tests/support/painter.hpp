@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Renderers with all that a picture of theirs depends on in one place, as tests vary it.
+// Renderers with all options of a picture in one object, as tests vary them.
 #pragma once
 
 #include <span>
@@ -14,7 +14,7 @@
 
 namespace rastrum::test {
 
-/// The renderer's options, the row of the family, and the looks of its frames.
+/// The options of the renderer, the family's row and the frames.
 struct RenderOptions : family::Options {
   bool in_place = false;  ///< frames by Renderer::render_in_place
 
@@ -22,7 +22,7 @@ struct RenderOptions : family::Options {
       : family::Options{std::move(how), std::move(frame), std::move(row)} {}
 };
 
-/// Throws what either part of the options is refused with.
+/// Throws the errors of both parts of the options.
 class Painter {
  public:
   explicit Painter(const RenderOptions& options)
@@ -35,7 +35,7 @@ class Painter {
     return options_.in_place ? renderer_.render_in_place(scene, camera, options_, targets, stop)
                              : renderer_.render(scene, camera, options_, targets, pass, stop);
   }
-  /// Draws with shaders and tests of their own, or these.
+  /// Draws with the draws' own shaders and tests, or with these.
   FrameStats draw(std::span<raster::Draw> draws, const raster::Shading& shading,
                   const raster::Testing& test, const Targets& targets, const Pass& pass = {},
                   std::stop_token stop = {}) {
@@ -45,7 +45,7 @@ class Painter {
     return RendererAccess::draw(renderer_, draws, {}, {}, options_, targets, pass);
   }
 
-  /// With what Device::automatic took.
+  /// The options, with Device::automatic resolved.
   [[nodiscard]] const RenderOptions& options() const { return options_; }
 
  private:

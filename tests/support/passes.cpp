@@ -65,7 +65,7 @@ AssertionResult passes_equal_one_draw(Painter& renderer, std::string_view shape)
         return why << ", " << shape << " in " << passes << " passes by "
                    << (by == By::load ? "load" : "over");
       };
-      // Over a picture overdraw is the pass's own.
+      // In a pass over a picture, overdraw counts only that pass.
       if (by == By::over)
         std::ranges::copy(once.frame.overdraw.pixels(), p.frame.overdraw.pixels().begin());
       if (AssertionResult r = same_images(p.frame, once.frame); !r) return failed(r);

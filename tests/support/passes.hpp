@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A picture drawn in several passes is the picture drawn at once, for whatever draws.
+// Checks that a picture in several passes equals the picture in one, for any renderer.
 #pragma once
 
 #include <string_view>
@@ -10,9 +10,9 @@
 
 namespace rastrum::test {
 
-/// Draws a built-in shape at once, then in passes of unequal size, each onto the ones before: by
-/// their visibility keys (Pass::load), and by their depth (Pass::over). With ids that count
-/// on (Pass::first_id) all images are the same bits, the keys too.
+/// Draws a built-in shape at once, then in passes of unequal size onto each other, by visibility
+/// keys (Pass::load) and by depth (Pass::over). With consecutive ids (Pass::first_id) all images
+/// and keys must have the same bits.
 [[nodiscard]] testing::AssertionResult passes_equal_one_draw(Painter& renderer,
                                                              std::string_view shape);
 

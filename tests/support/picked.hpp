@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Renderer::pick finds what the images of the whole frame hold.
+// Checks that Renderer::pick returns what the frame's images hold.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 
 namespace rastrum::test {
 
-/// `frame`: with kSurfaces. A difference is a fatal failure.
+/// `frame` has kSurfaces. A difference fails fatally.
 inline void expect_picked(const Pick& p, const Frame& frame, int x, int y) {
   ASSERT_EQ(static_cast<std::int64_t>(p.id), frame.ids(x, y));
   ASSERT_EQ(p.instance_id, frame.instances(x, y));

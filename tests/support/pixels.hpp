@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All pixels of an image, row by row, and against a function of their places.
+// Iterates over all pixels of an image by row, and compares them with a function of the place.
 #pragma once
 
 #include <array>
@@ -37,7 +37,8 @@ class PixelRange {
   return {width, height};
 }
 
-/// same(image(x, y), expected(x, y)) everywhere; the message names the first pixel where it is not.
+/// Whether same(image(x, y), expected(x, y)) everywhere. The message names the first differing
+/// pixel.
 template <class T, class F, class Same>
 [[nodiscard]] testing::AssertionResult pixels_are(const Image<T>& image, const F& expected,
                                                   const Same& same) {

@@ -30,7 +30,7 @@ inline Point3 cross(const Point3& a, const Point3& b) {
 inline Real length(const Point3& a) {
   return std::sqrt(dot(a, a));
 }
-/// Makes one of any type of point.
+/// Converts any type of point.
 template <class Vector>
 Point3 widen(const Vector& v) {
   return {v.x, v.y, v.z};

@@ -13,7 +13,7 @@
 namespace rastrum::test {
 namespace {
 
-/// The vertices of an instance, as they are asked for one by one.
+/// The vertices of an instance, computed on request.
 class Vertices {
  public:
   Vertices(const PointLineScene& scene, const InstanceView& instance)
@@ -35,7 +35,7 @@ class Vertices {
   }
 
  private:
-  /// Float64, rounded to float32 once.
+  /// In float64, rounded to float32 once.
   [[nodiscard]] ClipVertex wide(Vec3d p) const {
     const auto row = [&](int i) {
       const auto& m = matrix_.m[i];
@@ -69,7 +69,7 @@ void expect_points(PointLineScene& s, const InstanceView& instance, const Points
   }
 }
 
-/// The corners of a line's segments, polyline by polyline.
+/// The first corners of a line's segments, by polyline.
 std::vector<std::size_t> segment_corners(const LinesView& lines) {
   std::vector<std::size_t> first;
   const std::size_t corners = lines.corner_count();
@@ -126,7 +126,7 @@ Vec3 somewhere(Random& r, bool nasty) {
   return p;
 }
 
-/// `count` positions of an instance and what each may have.
+/// `count` positions of an instance and its optional attributes.
 struct Arrays {
   ArrayView<Vec3> positions, normals;
   ArrayView<Vec4> colors;

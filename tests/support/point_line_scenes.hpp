@@ -18,13 +18,13 @@ struct PointLineScene {
   KeptInstances instances;
   Camera camera;
   int width = 0, height = 0;
-  /// Snapped, with the ids of the scene; lines that need it as the library's clipper cuts them.
+  /// Snapped, with the scene's ids. Lines are cut by the library's clipper where needed.
   std::vector<SnappedPrimitive> primitives;
   std::uint64_t input = 0, dropped = 0;
 
   [[nodiscard]] SceneView view() const { return {instances, {}, {}}; }
 
-  // Arrays that the views refer to.
+  // Arrays of the views.
   std::deque<std::vector<Vec3>> positions;
   std::deque<std::vector<Vec3d>> wide_positions;
   std::deque<std::vector<Vec4>> colors;
@@ -34,9 +34,9 @@ struct PointLineScene {
   std::deque<std::vector<std::uint16_t>> offsets;
 };
 
-/// At most 5 instances: points of one pixel and larger, round and square, of one size or one each;
-/// segments and polylines; triangles. Arrays of several types, with and without indices; some
-/// vertices behind the eye, before the near plane, beyond the guard band, NaN.
+/// At most 5 instances: round and square points of one and more pixels, with common or single
+/// sizes; segments and polylines; triangles. Arrays have several types, with and without indices.
+/// Some vertices are behind the eye, before the near plane, beyond the guard band, or NaN.
 [[nodiscard]] PointLineScene generate_points_and_lines(std::uint64_t seed, int width, int height);
 
 }  // namespace rastrum::test

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The vertex rules of docs/conventions.md written a second time, for the tests alone: float32, one
-// order, no contraction. It uses only the types and `world_to_clip` of the library.
+// A second version of the vertex rules of docs/conventions.md, for tests: float32, in one order,
+// without contraction. It uses only the library's types and `world_to_clip`.
 #pragma once
 
 #include <array>
@@ -14,23 +14,23 @@
 
 namespace rastrum::test {
 
-/// float32 values; float64 ones for a finite vertex whose float32 transform overflows.
+/// float32 values; float64 for a finite vertex whose float32 transform overflows.
 struct ClipVertex {
   double x = 0, y = 0, z = 0, w = 0;
 };
 
 enum class Fate {
   dropped,     ///< a NaN or infinite vertex
-  whole,       ///< in front of the near plane and inside the guard band: snapped as it is
+  whole,       ///< in front of the near plane and inside the guard band: snapped directly
   needs_clip,  ///< anything else
 };
 
 struct ProjectedTriangle {
   std::int64_t id = 0;
   Fate fate = Fate::dropped;
-  bool mirrored = false;  ///< its instance turns what is counter-clockwise
+  bool mirrored = false;  ///< its instance reverses orientation
   ClipVertex clip[3];
-  bool has_position[3] = {};  ///< which corners are in front and inside the guard band
+  bool has_position[3] = {};  ///< whether each corner is in front and inside the guard band
   SnappedTriangle snapped;    ///< corners with a position; the others are meaningless
 };
 
@@ -41,7 +41,7 @@ struct ProjectedTriangle {
 /// The matrix rounded to float32 once, then a float32 transform.
 [[nodiscard]] ClipVertex to_clip(const Mat4d& object_to_clip, Vec3 position);
 
-/// False where the vertex is behind the near plane or outside the guard band.
+/// False if the vertex is behind the near plane or outside of the guard band.
 [[nodiscard]] bool snap(const ClipVertex& c, int width, int height, SnappedVertex& out);
 
 /// Every triangle of `scene` in order of submission. Indices must be in range.
@@ -55,9 +55,9 @@ struct ProjectedTriangle {
   return {row(0), row(1), row(2)};
 }
 
-/// A weight of each corner at the centre of pixel (px, py) of a W × H picture, perspective-correct;
-/// only their ratios matter. From the snapped positions, or of a triangle that needs the clipper
-/// from the homogeneous ones.
+/// The weights of the corners at the centre of pixel (px, py) of a W × H picture,
+/// perspective-correct, up to a common factor. From the snapped positions or, for a triangle that
+/// needs the clipper, from the homogeneous ones.
 [[nodiscard]] std::array<Real, 3> exact_weights(const ProjectedTriangle& t, int width, int height,
                                                 int px, int py);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The real meshes that tests draw, where the shared data is there, and how they are looked at.
+// The real meshes of the tests, if the shared data is there, and their cameras.
 #pragma once
 
 #include <cctype>

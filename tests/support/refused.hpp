@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether a call is refused, and in which words.
+// Checks that a call throws, and its message.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ template <class F>
   return said;
 }
 
-/// That f() throws Error{code}, and that its message holds `part`.
+/// Expects that f() throws Error{code} with `part` in its message.
 template <class F>
 void expect_refused(const std::string& part, Errc code, F&& f) {
   const std::string said = refusal_of(f, code);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// One function a kind, in the order of the table at the end. Sizes are in pixels, so that the same
-// seed is as nasty for a small image as for a large one.
+// One function per kind, in the order of the table at the end. Sizes are in pixels, so that a seed
+// is equally difficult for small and large images.
 #include "tests/support/scenes.hpp"
 
 #include <algorithm>
@@ -38,7 +38,7 @@ struct Maker {
     const std::uint32_t a = vertex(t.a), b = vertex(t.b), c = vertex(t.c);
     triangle(a, b, c);
   }
-  /// Its corners are those that corner() finds, one by one.
+  /// Its corners are successive results of corner().
   template <class F>
   void triangle_by(const F& corner) {
     triangle({corner(), corner(), corner()});
@@ -80,7 +80,7 @@ void use_pixel_camera(Maker& m) {
   m.camera = pixel_camera(m.width, m.height);
 }
 
-// `w` is the depth here.
+// `w` is used as the depth.
 Vec3 pixel_point(const Maker& m, ScreenPoint p) {
   return at_pixel(p.x_px, p.y_px, p.w, m.width, m.height);
 }
@@ -184,7 +184,7 @@ struct CameraPoint {
 };
 
 Vec3 from_camera(const Mat4d& world_to_camera, CameraPoint p) {
-  // The inverse of a rigid motion: transpose of the rotation, applied to what is left of the shift.
+  // The inverse of a rigid motion: transposed rotation of the shifted point.
   const auto& v = world_to_camera.m;
   const double d[3] = {p.x - v[0][3], p.y - v[1][3], p.z - v[2][3]};
   const auto row = [&](int i) {
@@ -267,7 +267,7 @@ void degenerate(Maker& m) {
 }
 
 void extreme(Maker& m) {
-  // A wide view, so that the transform of such coordinates itself stays finite.
+  // A wide view, so that such coordinates stay finite in the transform.
   m.camera = Camera{};
   m.camera.fov_rad = m.random.real32(0.8, 2.4);
   if (m.random.chance(0.5)) m.camera.far_plane = 100;
@@ -370,7 +370,7 @@ constexpr std::array kKinds = {
     Kind{"edge_on", edge_on},
 };
 
-// Normals and colours, now and then, by the positions' numbers or with numbers of their own.
+// Sometimes normals and colours, indexed like the positions or by themselves.
 void add_attributes(Maker& m) {
   Random& r = m.random;
   const auto fill = [&](auto& attribute, auto value) {
@@ -417,7 +417,7 @@ GeneratedScene generate(std::uint64_t seed, int width, int height) {
   kind.make(m);
   add_attributes(m);
   GeneratedScene out{kind.name, single(std::move(m.mesh)), m.camera};
-  // Now and then the same mesh stands in the scene again, elsewhere.
+  // Sometimes the mesh appears again elsewhere.
   if (out.scene.triangle_count() <= 60 && m.random.chance(0.3))
     for (int i = m.random.integer(1, 2); i > 0; --i)
       out.scene.instances.push_back({0, random_placement(m.random)});

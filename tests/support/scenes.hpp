@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Generated scenes: small, nasty and reproducible from a seed. Each kind aims at one rule of the
-// picture; the kinds take turns with the seed.
+// Generated scenes: small, difficult and reproducible from a seed. Each kind aims at one rule of
+// the picture; seeds cycle through the kinds.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct GeneratedScene {
   Scene scene;
   Camera camera;
 
-  /// While the scene stays as it is.
+  /// Valid while the scene does not change.
   [[nodiscard]] SceneView view() const {
     if (!binding) binding.emplace(scene);
     return binding->view();
@@ -29,24 +29,24 @@ struct GeneratedScene {
   mutable std::optional<SceneBinding> binding{};
 };
 
-/// How many kinds there are; `generate` draws kind seed % kSceneKinds.
+/// The number of kinds; `generate` draws kind seed % kSceneKinds.
 extern const int kSceneKinds;
 
-/// At most 200 triangles, to be seen in a `width` × `height` image.
+/// At most 200 triangles, for a `width` × `height` image.
 [[nodiscard]] GeneratedScene generate(std::uint64_t seed, int width, int height);
 
-/// A place on the screen and the distance from the eye along the view direction. Braces order the
-/// evaluation of their members, which calls do not: so a seed means one scene with every compiler.
+/// A place on the screen and the distance along the view direction. Braces fix the order of
+/// evaluation of members, unlike calls, so a seed gives the same scene with every compiler.
 struct ScreenPoint {
   double x_px = 0, y_px = 0, w = 1;
 };
 
-/// Places world points where they are wanted on the screen. The points of a `Placer` go through
-/// float64 and are rounded once, so they are exact only for the cameras that say so.
+/// Finds world points for places on the screen, in float64 and rounded once. So they are exact only
+/// for the cameras that say so.
 class Placer {
  public:
   Placer(const Camera& camera, int width, int height);
-  /// The world point that is seen there.
+  /// The world point at that place.
   [[nodiscard]] Vec3 at(ScreenPoint p) const;
 
  private:
@@ -55,8 +55,8 @@ class Placer {
   Mat4d world_to_camera_;
 };
 
-/// An orthographic camera for which world x = x_px − W/2, y = H/2 − y_px and z = depth, exactly
-/// where W and H are equal powers of two.
+/// An orthographic camera with world x = x_px − W/2, y = H/2 − y_px and z = depth, exact if W and H
+/// are equal powers of two.
 [[nodiscard]] Camera pixel_camera(int width, int height);
 [[nodiscard]] Vec3 at_pixel(double x_px, double y_px, double depth, int width, int height);
 
@@ -64,8 +64,8 @@ inline void add_triangle(Mesh& mesh, std::uint32_t a, std::uint32_t b, std::uint
   mesh.indices.insert(mesh.indices.end(), {a, b, c});
 }
 
-/// Calls f(a, b, c, d) with the numbers of the corners of each cell of a grid of columns × rows
-/// cells, whose first position has the number `first`: two of a row, two of the next.
+/// Calls f(a, b, c, d) with the vertex numbers of the corners of each cell of a columns × rows
+/// grid, two of a row and two of the next. The first vertex has the number `first`.
 template <class F>
 void for_each_cell(int columns, int rows, std::uint32_t first, const F& f) {
   const auto pitch = static_cast<std::uint32_t>(columns) + 1;
@@ -76,13 +76,13 @@ void for_each_cell(int columns, int rows, std::uint32_t first, const F& f) {
     }
 }
 
-/// With an index for each corner, whatever the mesh has.
+/// The mesh with an index for each corner.
 [[nodiscard]] Mesh indexed(Mesh mesh);
 
 /// One mesh, one instance, identity.
 [[nodiscard]] Scene single(Mesh mesh);
 
-/// A scene as it is drawn, and the camera that sees all of it.
+/// A scene with its view and a camera that sees all of it.
 struct Fitted {
   const Scene scene;
   const SceneBinding binding{scene};
@@ -92,11 +92,11 @@ struct Fitted {
   explicit Fitted(Scene s, float fov_rad = 1.0472F, bool orthographic = false)
       : scene(std::move(s)), camera(fit_camera(view, fov_rad, orthographic)) {}
   explicit Fitted(Mesh mesh, float fov_rad = 1.0472F) : Fitted(single(std::move(mesh)), fov_rad) {}
-  Fitted(const Fitted&) = delete;  // the view is of this one
+  Fitted(const Fitted&) = delete;  // the view refers to this object
   Fitted& operator=(const Fitted&) = delete;
 };
 
-/// A scene of one instance, whose geometry it keeps, and whose look may be changed.
+/// A scene of one instance, which owns its geometry and whose look may change.
 struct OneInstance : InstanceView {
   explicit OneInstance(GeometryView kept, const Mat4d& to_world = Mat4d::identity())
       : InstanceView{.object_to_world = to_world}, shape(std::move(kept)) {
@@ -107,7 +107,6 @@ struct OneInstance : InstanceView {
   [[nodiscard]] SceneView view() const {
     return {.instances = {static_cast<const InstanceView*>(this), 1}};
   }
-  /// Shows another geometry.
   void show(GeometryView other) {
     shape = std::move(other);
     geometry = shape;
@@ -115,7 +114,7 @@ struct OneInstance : InstanceView {
   GeometryView shape;
 };
 
-/// Instances, and the geometries that they refer to.
+/// Instances together with their geometries.
 struct KeptInstances : std::vector<InstanceView> {
   KeptInstances() = default;
   KeptInstances(std::initializer_list<GeometryView> all) {

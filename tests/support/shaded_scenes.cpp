@@ -24,7 +24,7 @@ float one_of(Random& r, std::initializer_list<float> values) {
   return values.begin()[r.integer(0, static_cast<int>(values.size()) - 1)];
 }
 
-/// A value for each position, or with numbers of its own for each corner.
+/// A value for each position, or for each corner through indices of its own.
 template <class T, class Make>
 void give(Random& r, const Mesh& mesh, Attribute<T>& attribute, const Make& make) {
   const bool own = r.chance(0.3);
@@ -101,7 +101,7 @@ void dress(Random& r, Scene& scene) {
         return Vec2{u, r.real32(-reach, reach)};
       });
   }
-  // Turned and scaled about the middle of the scene, by little, so that what was seen is seen.
+  // Turned and scaled a little around the middle of the scene, so that it stays visible.
   if (!r.chance(0.3)) return;
   const Vec3 axis = vector(r, 1);
   const Mat4d turn = rotation(rotation_about(axis, r.real(-0.1, 0.1)));

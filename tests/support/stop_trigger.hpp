@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Asks to stop at one of many calls and counts those that begin after it was asked, from any
-// thread: not by their number, for the thread that asks may have slept between the two. A renderer
-// was asked once request_stop() has returned.
+// Requests a stop at one of many calls and counts the calls that begin after it, from any thread.
+// It does not compare call numbers, because the requesting thread may sleep before its request. The
+// request counts once request_stop() has returned.
 #pragma once
 
 #include <atomic>
@@ -12,7 +12,7 @@ namespace rastrum::test {
 
 class StopTrigger {
  public:
-  /// `at`: the call that asks, from 0; none if negative.
+  /// `at`: the call that requests the stop, from 0; none if negative.
   explicit StopTrigger(std::int64_t at = -1) : at_(at) {}
 
   /// Before the first call.

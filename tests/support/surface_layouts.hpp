@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Spheres, cylinders, tubes, discs, points and lines in many memories: a geometry's arrays as other
-// types and strides, which must give the picture of the packed ones.
+// Spheres, cylinders, tubes, discs, points and lines in many memory layouts: arrays of other types
+// and strides, which must give the picture of the packed ones.
 #pragma once
 
 #include <cstddef>
@@ -16,8 +16,8 @@
 
 namespace rastrum::test {
 
-/// `n` places in a ball of radius 4, a radius each in 64ths and a size of up to 9 px, colours of
-/// whole 255ths, pairs and runs of them.
+/// `n` places in a ball of radius 4, with radii in 64ths, sizes of up to 9 px, colours in 255ths,
+/// and pairs and runs of places.
 struct Cloud {
   std::vector<Vec3> positions, normals;
   std::vector<float> radii, sizes;
@@ -87,8 +87,8 @@ struct CloudViews {
 struct CloudLayout {
   std::string name;
   std::function<void(const Cloud&, Memory&, CloudViews&)> change;
-  /// Points and lines, the last three geometries, transform float64 places in float64: their
-  /// picture may be another one.
+  /// float64 positions: the last three geometries (points and lines) are transformed in float64, so
+  /// their picture may differ.
   bool wide = false;
 
   [[nodiscard]] std::vector<GeometryView> geometries(const Cloud& cloud, Memory& memory) const {

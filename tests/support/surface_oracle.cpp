@@ -70,7 +70,7 @@ struct Tube {
 
   explicit Tube(const SurfacePrimitive& p) : s(p), axis(p.p0, p.p1) {}
   [[nodiscard]] bool one_ball() const { return axis.size <= std::abs(s.r1 - s.r0); }
-  /// Where on the axis, from 0 to 1, lies the ball that comes nearest to `p`.
+  /// The place on the axis, from 0 to 1, of the ball nearest to `p`.
   [[nodiscard]] Real foot(const Point3& p) const {
     if (one_ball()) return s.r1 > s.r0 ? 1 : 0;
     const Real rho = length(axis.across(p));
@@ -93,7 +93,7 @@ bool inside(const SurfacePrimitive& s, const Point3& p) {
   return in_ball(axis.across(p), {}, s.r0 + (s.r1 - s.r0) * h / axis.size);
 }
 
-/// Outwards, in object space.
+/// Outward, in object space.
 Point3 normal_of(const SurfacePrimitive& s, const Point3& p) {
   if (s.kind == SurfaceKind::disc) return s.p1;
   if (s.kind == SurfaceKind::sphere) return p - s.p0;
@@ -110,7 +110,7 @@ Point3 normal_of(const SurfacePrimitive& s, const Point3& p) {
   return v * (1 / rho) - axis.unit * slope;
 }
 
-/// Where along the axis a point of the surface belongs.
+/// The place on the axis that a surface point belongs to.
 Real along_of(const SurfacePrimitive& s, const Point3& p) {
   if (s.kind == SurfaceKind::tube) return Tube(s).foot(p);
   if (s.kind != SurfaceKind::closed_cone && s.kind != SurfaceKind::open_cone) return 0;
@@ -185,7 +185,7 @@ std::vector<Crossing> crossings(const SurfacePrimitive& s, const Ray& r) {
       break;
     }
   }
-  // The places between the roots tell what is inside; it is one interval.
+  // Points between the roots decide what is inside, which is one interval.
   std::sort(roots.begin(), roots.end());
   for (std::size_t i = 0; i + 1 < roots.size(); ++i) {
     if (roots[i] == roots[i + 1] || !inside(s, r.at((roots[i] + roots[i + 1]) / 2))) continue;

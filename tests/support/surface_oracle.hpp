@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The oracle of spheres, cylinders, cones, tubes and discs: a ray through the centre of a pixel, in
-// long double, against each primitive by itself. It shares no code with the library: rays are of
-// points and directions (no homogeneous matrix), and what is inside is asked of places between the
-// roots, not of intervals of depth. Plain on purpose.
+// The oracle of spheres, cylinders, cones, tubes and discs: a ray through a pixel's centre, in long
+// double, against each primitive. It shares no code with the library: rays are points and
+// directions (no homogeneous matrix), and points between the roots decide what is inside, not
+// intervals of depth. Deliberately plain.
 #pragma once
 
 #include <cstddef>
@@ -24,7 +24,7 @@ struct OraclePlane {
 
 struct SurfacePrimitive {
   SurfaceKind kind = SurfaceKind::sphere;
-  Point3 p0, p1;  ///< object space; of a disc p1 is its normal
+  Point3 p0, p1;  ///< object space; a disc's p1 is its normal
   Real r0 = 0, r1 = 0;
   Point3 p2{};  ///< of a triangle
   /// World = columns · object + origin.
@@ -33,7 +33,7 @@ struct SurfacePrimitive {
   std::int64_t id = 0;
   std::size_t instance = 0;
   bool culls_front = false, culls_back = false;
-  std::vector<OraclePlane> planes{};  ///< of a point all keep it, or it is not there
+  std::vector<OraclePlane> planes{};  ///< all planes must keep a point
 
   [[nodiscard]] Point3 to_world(const Point3& p) const {
     return columns[0] * p.x + columns[1] * p.y + columns[2] * p.z + origin;
@@ -44,20 +44,20 @@ struct SurfacePrimitive {
 struct OracleCamera {
   Point3 eye, right, up, back;  ///< orthonormal
   bool orthographic = false;
-  Real px_scale = 1;  ///< the view's extent at distance 1 (orthographic: anywhere) of a pixel
+  Real px_scale = 1;                   ///< a pixel's extent at distance 1 (orthographic: anywhere)
   Real near_plane = 0, far_plane = 0;  ///< far 0: infinite
   int width = 0, height = 0;
 };
 
 /// A surface that a ray passes at or beyond the near plane.
 struct SurfaceHit {
-  Real depth;  ///< reversed, not cut to [0, 1]
+  Real depth;  ///< reversed, not clamped to [0, 1]
   std::int64_t id;
-  bool front;       ///< entered there
-  Point3 normal;    ///< world, outwards, not of unit length; not of triangles
+  bool front;       ///< the ray enters there
+  Point3 normal;    ///< world, outward, not normalized; not for triangles
   Point3 position;  ///< world
   Real view_depth;  ///< along the axis
-  Real along;       ///< of the primitive's axis, from 0 to 1; 0 where it has none
+  Real along;       ///< place on the primitive's axis, from 0 to 1; 0 if it has none
 };
 
 /// The surfaces that the ray through (x_px, y_px) hits, nearest first.

@@ -14,7 +14,7 @@ namespace rastrum::test {
 namespace surface_scenes {
 
 enum Kind {
-  kMixed,       ///< beside and through each other
+  kMixed,       ///< beside each other and crossing
   kNear,        ///< the near plane cuts them, or the eye is inside
   kBehind,      ///< also behind the eye
   kTiny,        ///< about a pixel
@@ -51,7 +51,7 @@ class Maker {
 
   void make_camera() {
     Camera& c = s_.camera;
-    // On the axes of the world, so that the oracle knows them exactly.
+    // On the world's axes, so that the oracle knows them exactly.
     origin_ = kind_ == kFar ? Vec3{1048576, -524288, 2097152} : Vec3{0, 0, 0};
     c.eye = origin_;
     c.target = origin_ + Vec3{0, 0, -1};
@@ -74,14 +74,14 @@ class Maker {
     o.height = s_.height;
   }
 
-  /// A place where something may be seen, object space.
+  /// A place that is probably visible, in object space.
   Vec3 place() {
     double z = real(-14, -2);
     if (kind_ == kNear) z = real(-2.5, 0.3);
     if (kind_ == kBehind) z = real(-8, 8);
     if (kind_ == kFinite) z = real(-30, -2);
     const double across = s_.camera.orthographic ? 4 : std::max(0.8, -0.55 * z);
-    // Eighths, so that nothing is rounded far from the origin.
+    // Multiples of 1/64, so that nothing is rounded far from the origin.
     const auto eighths = [](double v) { return static_cast<float>(std::round(v * 64) / 64); };
     return origin_ +
            Vec3{eighths(real(-across, across)), eighths(real(-across, across)), eighths(z)};
@@ -121,7 +121,7 @@ class Maker {
   static bool is_fine(Vec3 p) {
     return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
   }
-  /// Only for the renderer.
+  /// Adds a primitive that only the renderer sees.
   void skip(bool is_dropped) {
     ++next_id_;
     s_.dropped += is_dropped;
@@ -135,7 +135,7 @@ class Maker {
       matrix_.m[0][3] = real(-1, 1);
       matrix_.m[2][3] = real(-4, 0);
     }
-    // Far away float32 vertices tremble.
+    // Far from the origin, float32 vertices are inexact.
     s_.instances.add(geometry(random_.integer(0, kind_ == kFar ? 4 : 5)), matrix_);
   }
   GeometryView geometry(int which) {
@@ -249,7 +249,7 @@ class Maker {
 
   MeshView triangle() {
     auto& p = s_.positions.emplace_back();
-    // Neither steep nor thin: its corners are snapped.
+    // Neither steep nor thin, because its corners are snapped.
     p.push_back(place());
     const double x = real(0.5, 4), y = real(-4, 4), turned = real(0.5, 1.5);
     for (const auto& [u, v] : {std::pair{x, y}, std::pair{-y * turned, x * turned}})
@@ -268,7 +268,7 @@ class Maker {
   std::int64_t next_id_ = 0;
 };
 
-/// Through a place near a primitive.
+/// A plane through a place near a primitive.
 ClipPlane plane_near(const SurfacePrimitive& p, bool in_world, Random& random) {
   const auto real = [&](double a, double b) { return random.real(a, b); };
   const Vec3d n{real(-1, 1), real(-1, 1), real(-1, 1)};

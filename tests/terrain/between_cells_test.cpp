@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Near ground under a sharp shadow: squares with MapFilter::none, none with `bilinear`, and either
+// Near ground under a sharp shadow: blocky with MapFilter::none, smooth with `bilinear`. Both have
 // the same bits by plain code and on every instruction set.
 #include <rastrum/terrain.hpp>
 
@@ -38,7 +38,7 @@ Image<Rgba8> picture(const Terrain& terrain, MapFilter filter, TerrainRendererOp
                          .filter = filter,
                          .tiling = Tiling::clamp};
   Image<Rgba8> color(kWidth, kHeight);
-  // 3 cells above the plane, the end of the shadow ahead.
+  // 3 cells above the plane, with the end of the shadow ahead.
   const TerrainCamera camera{.x = 40, .y = 32, .altitude = 3, .horizon_px = 20};
   TerrainRenderer(by).render(terrain, camera, options, {.color8 = color});
   return color;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The classic picture against a transcription of the original program's rules (FACTS, "Voxel
-// Space") that shares no code with the library: integer maps, its own tiling, one pixel at a time.
+// The classic picture against a transcription of the original program that shares no code with the
+// library: integer maps, its own tiling, one pixel at a time.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -44,7 +44,7 @@ Original original_of(const HeightMap& map) {
   return o;
 }
 
-/// The rules as the original has them; the map repeats with its own size.
+/// The original's rules. The map repeats with its own size.
 std::vector<std::uint32_t> original_frame(const Original& map, TerrainCamera camera, int W, int H,
                                           double distance) {
   const auto offset = [&](double x, double y) {
@@ -104,7 +104,7 @@ TerrainLook classic(int width, int height, double distance) {
   return TerrainLook({.width = width, .height = height, .distance = distance, .classic = true});
 }
 
-/// Every way to draw it, each compared with the transcription.
+/// Compares every way to draw with the transcription.
 void expect_original(const HeightMap& map, const TerrainCamera& camera, TerrainLook options,
                      bool all) {
   const std::vector<std::uint32_t> screen =
@@ -158,7 +158,7 @@ TEST(Classic, EqualsTheOriginalOnRandomCamerasAndMaps) {
   }
 }
 
-/// The real map in the range of the classic ones; colours that tell neighbours apart.
+/// The real map, scaled to the classic range, with colours that distinguish neighbours.
 TEST(Classic, EqualsTheOriginalOnTheRealMap) {
   const auto file = test::shared_data("terrain/jotunheimen512.bin");
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
@@ -187,7 +187,7 @@ TEST(Classic, EqualsTheOriginalOnLargePictures) {
   }
 }
 
-// Asked where a block has begun, its memory taken and no slice sampled: nothing but sky is drawn.
+// The stop comes after a block has its memory and before it samples a slice: only sky is drawn.
 TEST(Classic, ABlockEndsSoonWhenStopped) {
   std::mt19937 random(6);
   const Terrain terrain(test::random_map(64, 64, random));

@@ -51,10 +51,11 @@ TEST(HillShade, IsTheCosineToTheSun) {
   };
   EXPECT_NEAR(hill_shade(0, 0, {0, 90}, 0.2F), 1, 1e-6);
   EXPECT_NEAR(hill_shade(0, 0, {0, 45}, 0), s45, 1e-6);
-  // Falls to the east by 1 a cell: faces an eastern sun at 45°, and turns from a western one.
+  // Falls to the east by 1 a cell, so it faces an eastern sun at 45° and turns away from a western
+  // one.
   EXPECT_NEAR(hill_shade(-1, 0, {90, 45}, 0), 1, 1e-6);
   EXPECT_NEAR(hill_shade(-1, 0, {270, 45}, 0.25F), 0.25F, 1e-6);
-  // Falls to the north, y being south.
+  // Falls to the north; y points south.
   EXPECT_NEAR(hill_shade(0, 1, {0, 45}, 0), 1, 1e-6);
   EXPECT_NEAR(hill_shade(0, -1, {180, 45}, 0), 1, 1e-6);
 }
@@ -104,8 +105,8 @@ TEST(LitColors, ColoursOfAnotherSizeAreScaled) {
   EXPECT_THROW((void)lit_colors(map, {.ambient = 2}, {}), Error);
 }
 
-// A ramp from centre to centre: 0 and 240 on two cells, on eight 30 further each, and round the
-// edge.
+// A ramp between cell centres: 0 and 240 on two cells become steps of 30 on eight, also across the
+// map's edge.
 TEST(LitColors, SmoothOnesLieBetweenCentres) {
   HeightMap map{Image<float>(8, 1), Image<Rgba8>(2, 1)};
   map.colors(1, 0) = {240, 0, 120, 255};
@@ -120,7 +121,7 @@ TEST(LitColors, SmoothOnesLieBetweenCentres) {
   };
   EXPECT_EQ(red(Tiling::clamp), (std::vector<int>{0, 0, 30, 90, 150, 210, 240, 240}));
   EXPECT_EQ(red(Tiling::repeat), (std::vector<int>{90, 30, 30, 90, 150, 210, 210, 150}));
-  // The light, too: cells of one map under colours four times as fine.
+  // The light too: cells of one map under colours four times as fine.
   HeightMap fine = post();
   const ShadowOptions clamped{Tiling::clamp};
   Light light{.sun = {90, 45}, .shadows = Shadows::sharp, .ambient = 0.5F};
@@ -129,7 +130,7 @@ TEST(LitColors, SmoothOnesLieBetweenCentres) {
   for (Rgba8& c : fine.colors.pixels()) c = {200, 100, 50, 255};
   light.smooth = true;
   const Image<Rgba8> smooth = lit_colors(fine, light, clamped);
-  // The shadow ends at 40, half way between the centres 39.5 and 40.5: texels 158 to 161.
+  // The shadow ends at 40, between the centres 39.5 and 40.5, which are texels 158 to 161.
   for (const auto& [x, r] :
        {std::pair(157, 200), {158, 188}, {159, 163}, {160, 138}, {161, 113}, {162, 100}})
     EXPECT_NEAR(smooth(x, 66).r, r, 13) << x;

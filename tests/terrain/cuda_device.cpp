@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A program whose device is the CPU, as tests/raster/cuda/cuda_on_cpu.cpp makes it, with as much
-// memory as a test says. So TerrainRenderer takes the way that it takes on a GPU.
+// A program whose device is the CPU, like tests/raster/cuda/cuda_on_cpu.cpp, with memory that a
+// test sets. So TerrainRenderer works as on a GPU.
 #include "tests/terrain/cuda_device.hpp"
 
 #include <rastrum/parallel/cuda/driver.hpp>

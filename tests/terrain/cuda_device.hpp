@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A device for the tests of rastrum/terrain/cuda: the CPU, with as much memory as a test says
+// A device for the tests of rastrum/terrain/cuda: the CPU, with memory that a test sets
 // (cuda_device.cpp); or a GPU, without which the tests are skipped (cuda_gpu.cpp).
 #pragma once
 
@@ -18,7 +18,7 @@ class TerrainOnDevice : public testing::Test {
     const parallel::CudaStatus status = parallel::cuda_status();
     if (!status.usable) GTEST_SKIP() << "no device: " << status.why_not;
   }
-  /// Sets the device's free memory from now on; false for a GPU, whose memory cannot be set.
+  /// Sets the device's free memory from now on. False for a GPU, which does not allow it.
   static bool set_free_bytes(std::uint64_t bytes);
 };
 

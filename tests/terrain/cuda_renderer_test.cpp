@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The terrain renderer with Device::cuda. Compiled here with Thrust's C++ system the device is the
-// CPU (parallel/cuda/system.cuh), so all that kernels compute is held to the serial reference bit
-// for bit where there is no GPU; as cuda_terrain_test the same tests run on one.
+// The terrain renderer with Device::cuda. Here Thrust's C++ system makes the CPU the device
+// (parallel/cuda/system.cuh), so all that kernels compute is compared with the serial reference,
+// bit for bit, without a GPU. As cuda_terrain_test the same tests run on one.
 #include <algorithm>
 #include <limits>
 #include <random>
@@ -97,7 +97,7 @@ TEST_F(CudaTerrain, TheClassicPictureIsTheOriginals) {
   }
 }
 
-// The walk leaves out what maxima hide, or the device would be slower than the CPU.
+// The walk skips what maxima hide, or the device would be slower than the CPU.
 TEST_F(CudaTerrain, LeavesOutWhatIsHidden) {
   std::mt19937 random(3);
   const Terrain hills(test::random_map(1024, 1024, random, 0.1));
@@ -145,7 +145,7 @@ TEST_F(CudaTerrain, AFrameLikeTheOneBeforeAllocatesNothingAndCopiesNoMap) {
   EXPECT_LT(bytes, 12U * 256 * 200 + (1U << 18));
   for (int i = 0; i < 3; ++i)
     EXPECT_EQ(renderer.render(a, camera, {.color8 = colors.view()}).device_bytes, bytes);
-  // Another map of that size takes its place; other colours are seen.
+  // Another map of that size replaces it, and other colours appear.
   const auto first = colors;
   EXPECT_LE(renderer.render(b, camera, {.color8 = colors.view()}).device_bytes, bytes + 256 * 200);
   options.device = Device::serial;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shadows on a device against the serial definitions, bit for bit; the device is the CPU where
-// there is no GPU (cuda_device.hpp).
+// Shadows on a device against the serial definitions, bit for bit. Without a GPU the device is the
+// CPU (cuda_device.hpp).
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -77,7 +77,7 @@ TEST_F(CudaShadows, SoftOnesAreTheMeansOfTheDefinitions) {
     HeightMap map = test::random_map(40 + 9 * i, 57, random, 0.4);
     for (float& h : map.heights.pixels()) h = h / 6 - 20;
     if (i % 3 == 1) map.heights.pixels()[static_cast<std::size_t>(70 * i)] = NAN;
-    // From a disc that is cut by the horizon to one about the zenith.
+    // From a sun that the horizon cuts to one around the zenith.
     const Sun sun{31.0 * i, 0.1 + i * 8.1};
     const Tiling tiling = static_cast<Tiling>(i % 3);
     const auto expected = soft_light(map.heights.view(), sun, 3, {tiling, Device::serial});

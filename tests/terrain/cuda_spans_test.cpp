@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Calls for users whose maps and pictures are on the device already: frames and shadows of spans,
-// without a copy of either.
+// Frames and shadows of users whose maps and pictures are already on the device, as spans that are
+// not copied.
 #include <algorithm>
 #include <random>
 

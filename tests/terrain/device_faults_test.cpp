@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each call of a terrain's frame, and of its shadows, that a driver may refuse is refused once, and
-// what is asked for after it is right (support/device_faults.hpp).
+// Refuses each device call of a terrain's frame and shadows once, and expects the next result to be
+// right (support/device_faults.hpp).
 #include <algorithm>
 #include <cstdint>
 #include <random>
@@ -76,7 +76,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 class ShadowFaults : public test::TerrainOnDevice {};
 
-/// compute(device) of a map on the device, as the serial definition has it.
+/// Compares compute(device), of a map on the device, with the serial definition.
 template <class F>
 void expect_refused_and_right(const F& compute) {
   const auto expected = compute(Device::serial);

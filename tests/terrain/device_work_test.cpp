@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The estimated costs of a frame of terrain, checked by hand, and which frames are worth a GPU.
+// Checks by hand the estimated costs of a terrain frame, and which frames are worth a GPU.
 #include <rastrum/terrain/device_work.hpp>
 
 #include <gtest/gtest.h>

@@ -54,7 +54,7 @@ TEST(NamedFunctions, AreWhatTheySay) {
   }
 }
 
-/// The same bits on every machine: a hash of samples, kept here.
+/// The same bits on every machine: a hash of samples.
 TEST(NamedFunctions, HaveTheseBits) {
   std::uint64_t hash = 0xCBF29CE484222325U;
   for (const FunctionInfo& info : named_functions()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Maps for the tests: random ones, rough or smooth, and the real ones that lie beside the checkout.
+// Maps for the tests: random ones, rough or smooth, and real ones from beside the checkout.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 
 namespace rastrum::test {
 
-/// Whole heights 0 to 255: `rough` of 1 is noise, 0 waves.
+/// Whole heights 0 to 255; `rough` 1 is noise, 0 is waves.
 inline terrain::HeightMap random_map(int width, int height, std::mt19937& random,
                                      double rough = 0.2) {
   terrain::HeightMap map{Image<float>(width, height), Image<Rgba8>(width, height)};
@@ -37,7 +37,7 @@ inline terrain::HeightMap random_map(int width, int height, std::mt19937& random
   return map;
 }
 
-/// The real map with holes, heights in cells; none where ../shared/data lacks it.
+/// The real map with holes, heights in cells; empty if ../shared/data lacks it.
 inline std::optional<Image<float>> saint_helens() {
   const auto file = shared_data("terrain/SainteHelens.dem");
   if (!std::filesystem::exists(file)) return {};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// All ways to a picture give the same bits: serial, threads, every instruction set; maps and
-// functions, filters, tilings, projections, fog, with depth.
+// All ways to draw a picture give the same bits: serial, threads, every instruction set; for maps
+// and functions, filters, tilings, projections and fog, with depth.
 #include <cmath>
 #include <random>
 #include <stop_token>
@@ -22,7 +22,7 @@ using test::TerrainLook;
 using test::TerrainPainter;
 using Picture = test::TerrainPicture;
 
-/// The serial reference against everything else.
+/// Compares the serial reference with everything else.
 void expect_same_everywhere(const Terrain& terrain, const TerrainCamera& camera,
                             TerrainLook options, const std::string& what) {
   options.device = Device::serial;
@@ -67,7 +67,7 @@ TEST(Methods, GiveTheSamePictureOfFunctions) {
                          "waves");
 }
 
-// A frame that is stopped ends after a bounded number of samples, and the next one is whole.
+// A stopped frame ends after a bounded number of samples, and the next one is complete.
 TEST(Methods, EndSoonWhenStopped) {
   test::StopTrigger* trigger = nullptr;
   const Terrain hills = Terrain::of(
@@ -86,12 +86,12 @@ TEST(Methods, EndSoonWhenStopped) {
     std::int64_t most;
     bool classic = false;
   };
-  constexpr std::int64_t kColumns = 64, kSlices = 8;  // of a look at the token, see fast.cpp
+  constexpr std::int64_t kColumns = 64, kSlices = 8;  // between queries of the token (fast.cpp)
   const auto slices = static_cast<std::int64_t>(Picture(hills, camera, options).stats.slices);
   for (const Case& c : {Case{nullptr, Device::threads, 2 * kColumns * kSlices},
                         Case{&family::terrain_words(), Device::threads, 2 * 4096},
                         Case{nullptr, Device::serial, slices},
-                        // Classic draws the terrain of a function slice by slice.
+                        // Classic draws a function's terrain slice by slice.
                         Case{nullptr, Device::serial, options.width, true}}) {
     SCOPED_TRACE(std::string(c.added == nullptr ? "fast" : "words") + ", device " +
                  std::to_string(static_cast<int>(c.device)) + (c.classic ? ", classic" : ""));

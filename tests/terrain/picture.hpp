@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The picture of a terrain, what differs between two of them, and random things to draw.
+// A terrain's picture, differences between two, and random cases.
 #pragma once
 
 #include <algorithm>
@@ -51,8 +51,8 @@ struct TerrainCase {
   terrain::TerrainCamera camera;
 };
 
-/// The i-th of a test: a map of one of `sizes`, with and without holes, seen by any filter, tiling
-/// and projection, some from far away, rolled, in fog.
+/// The i-th case of a test: a map of one of `sizes`, with or without holes, with any filter, tiling
+/// and projection, some from far away, rolled, or in fog.
 [[nodiscard]] inline TerrainCase random_case(std::mt19937& random, int i,
                                              std::span<const int[2]> sizes, double farthest) {
   const auto between = [&](double low, double high) {

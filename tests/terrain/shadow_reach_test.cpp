@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How far beyond a map the sweep of shadows looks, and the ranges of tiles that tell it.
+// How far beyond a map the shadow sweep looks, which depends on the height ranges of tiles.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -44,7 +44,7 @@ Sweep plan(const Image<float>& map, const Sun& sun, Tiling tiling) {
   return plan_sweep(caster, tiles_of(map), ray, ray_steps(ray, caster.relief()));
 }
 
-/// Smooth and rough, so that some blocks hide others and some do not.
+/// Smooth and rough, so that some blocks hide others.
 Image<float> hills(int width, int height, double relief, Random& random) {
   Image<float> map(width, height);
   const double u = random.real(-0.1, 0.1), v = random.real(-0.1, 0.1), rough = random.real(0, 0.4);
@@ -89,7 +89,7 @@ TEST(ShadowReach, WhatIsLeftOutDecidesNoCell) {
   EXPECT_GT(left_out, asked / 20) << "too little to test it";
 }
 
-/// A wall in each tile of the plane hides those behind it, but for where it has a gap.
+/// A wall in each copy of the map hides the copies behind it, except at a gap.
 TEST(ShadowReach, EndsBehindAWallThatHidesAllOthers) {
   Image<float> map(256, 256);
   for (int y = 0; y < 256; ++y)
@@ -98,9 +98,9 @@ TEST(ShadowReach, EndsBehindAWallThatHidesAllOthers) {
   const Sweep sweep = plan(map, sun, Tiling::repeat);
   ASSERT_EQ(sweep.reach.size(), 8U);
   for (std::size_t i = 0; i < 8; ++i) {
-    // The wall lies in blocks 18 and 19 of columns; at the gap the last of its copies that shadows
-    // of 1,100 cells come from, the one in columns 1,312 to 1,343, is needed. Rays of bands 64 to
-    // 95 touch row 96, whose tile has the gap.
+    // The wall is in blocks 18 and 19 of columns. At the gap, shadows of 1,100 cells need the
+    // wall's last copy in columns 1,312 to 1,343. Rays of bands 64 to 95 touch row 96, whose tile
+    // has the gap.
     EXPECT_EQ(sweep.reach[i], i == 2 || i == 3 ? 84 : 20) << i;
   }
 }

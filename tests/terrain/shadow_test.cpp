@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Shadows against oracles that share nothing with the library but the definition in shadows.hpp.
+// Shadows against oracles that share only the definition in shadows.hpp with the library.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -29,7 +29,7 @@ Image<float> noise(int width, int height, float relief, std::uint64_t seed) {
   return map;
 }
 
-/// Sums of waves: slopes on which shadows are long and have smooth edges.
+/// Sums of waves: slopes with long shadows and smooth edges.
 Image<float> hills(int width, int height, float relief, std::uint64_t seed) {
   Random random(seed);
   Image<float> map(width, height);
@@ -53,7 +53,7 @@ std::int64_t oracle_tile(std::int64_t i, std::int64_t n, Tiling tiling) {
   return i;
 }
 
-/// −∞ where nothing is.
+/// −∞ outside.
 float oracle_height(const Image<float>& map, std::int64_t x, std::int64_t y, Tiling tiling) {
   const bool inside = x >= 0 && y >= 0 && x < map.width() && y < map.height();
   if (tiling == Tiling::none && !inside) return -INFINITY;
@@ -61,12 +61,12 @@ float oracle_height(const Image<float>& map, std::int64_t x, std::int64_t y, Til
              static_cast<int>(oracle_tile(y, map.height(), tiling)));
 }
 
-/// The definition by brute force: every cell of a square around, cut by the ray's three slabs.
+/// The definition by brute force: every cell of a surrounding square, cut by the ray's three slabs.
 Image<std::uint8_t> oracle(const Image<float>& map, double azimuth, double elevation,
                            Tiling tiling) {
   const double radians = std::numbers::pi / 180;
   double dx = std::sin(azimuth * radians), dy = -std::cos(azimuth * radians);
-  // Multiples of 45° are meant exactly.
+  // Multiples of 45° are exact.
   if (std::fmod(azimuth, 90.0) == 0) (std::abs(dx) < 0.5 ? dx : dy) = 0;
   if (std::fmod(azimuth, 90.0) == 45)
     dx = std::copysign(std::numbers::sqrt2 / 2, dx), dy = std::copysign(dx, dy);
@@ -75,7 +75,7 @@ Image<std::uint8_t> oracle(const Image<float>& map, double azimuth, double eleva
   for (const float h : map.pixels())
     if (std::isfinite(h)) low = std::min(low, h), high = std::max(high, h);
   const int reach = static_cast<int>(std::ceil((high - low) / rise)) + 2;
-  // The ray is the same from every cell: the cells it enters, and where.
+  // All cells have the same ray: the cells that it enters, and where.
   struct Entered {
     int x, y;
     double t;
@@ -123,7 +123,7 @@ std::size_t count_dark(const Image<std::uint8_t>& shadow) {
   return static_cast<std::size_t>(std::ranges::count(shadow.pixels(), 1));
 }
 
-/// All devices against `expected`; returns how many cells are dark.
+/// Compares all devices with `expected`. Returns the number of dark cells.
 std::size_t check(const Image<float>& map, const Sun& sun, Tiling tiling,
                   const Image<std::uint8_t>& expected) {
   for (const ShadowOptions& options : devices(tiling)) {
@@ -140,11 +140,11 @@ std::size_t check(const Image<float>& map, const Sun& sun, Tiling tiling,
   }
   return count_dark(expected);
 }
-/// Against the oracle.
+/// Compares with the oracle.
 std::size_t check_sharp(const Image<float>& map, double azimuth, double elevation, Tiling tiling) {
   return check(map, {azimuth, elevation}, tiling, oracle(map, azimuth, elevation, tiling));
 }
-/// Against the plain definition, where the oracle's squares are too large.
+/// Compares with the plain definition, where the oracle would be too slow.
 std::size_t check_devices(const Image<float>& map, const Sun& sun, Tiling tiling) {
   return check(map, sun, tiling, sharp_shadows(map.view(), sun, devices(tiling)[0]));
 }
@@ -184,7 +184,7 @@ TEST(SharpShadows, NearTheAxesAndDiagonals) {
       check_sharp(map, base + off, 20, Tiling::repeat);
 }
 
-/// Longer than the 512 bands that a thread takes at a time, in either direction.
+/// Longer than the 512 bands that a thread takes at a time, in both directions.
 TEST(SharpShadows, LongMapsWithSeveralBlocksAndParts) {
   for (const auto& map : {hills(560, 90, 40, 7), hills(90, 560, 40, 8)})
     for (const auto& [azimuth, tiling] :
@@ -196,7 +196,7 @@ TEST(SharpShadows, LongMapsWithSeveralBlocksAndParts) {
 TEST(SharpShadows, RealMap) {
   const auto heights = test::saint_helens();
   if (!heights) GTEST_SKIP() << test::kNoRealMap;
-  // The crater and the holes of the eastern edge: the oracle takes long on all of it.
+  // The crater and the holes of the eastern edge, because the oracle is slow on the whole map.
   Image<float> part(200, 160);
   const int left = heights->width() - part.width(), top = (heights->height() - part.height()) / 2;
   for (int y = 0; y < part.height(); ++y)
@@ -207,15 +207,15 @@ TEST(SharpShadows, RealMap) {
     EXPECT_GT(check_sharp(part, azimuth, elevation, Tiling::clamp), 10U);
 }
 
-/// From reliefs that float32 has no units for, on either side; and from rays that climb all of it
-/// within two columns to such that climb a few units a column.
+/// Reliefs beyond float32's units, and rays from such that climb all of it within two columns to
+/// such that climb a few units a column.
 TEST(SharpShadows, ReliefsOfAllSizesAndShadowsOfAllLengths) {
   const Image<float> ground = noise(70, 90, 1, 9);
   for (const double relief : {1e-37, 1e-20, 1.0, 1e20, 6e38})
     for (const double length : {1.5, 4.0, 60.0, 5e3}) {
       Image<float> map = ground;
       for (float& h : map.pixels()) h = (2 * h - 1) * static_cast<float>(relief / 2);
-      // So near to 90° that it rounds to it where the relief is large.
+      // So close to 90° that it rounds to it if the relief is large.
       const double elevation = std::atan(relief / length) * 180 / std::numbers::pi;
       for (const double azimuth : {20.0, 70.0, 90.0, 225.0}) {
         const std::size_t dark = check_devices(map, {azimuth, elevation}, Tiling::repeat);
@@ -224,7 +224,7 @@ TEST(SharpShadows, ReliefsOfAllSizesAndShadowsOfAllLengths) {
     }
 }
 
-/// Plains behind the edge on the sun's side: the sweep looks at nothing beyond the map.
+/// Plains behind the edge on the sun's side: the sweep needs nothing beyond the map.
 TEST(SharpShadows, NothingBeyondTheMapIsHighEnough) {
   Image<float> map = noise(64, 70, 20, 11);
   for (int y = 0; y < map.height(); ++y)
@@ -233,7 +233,7 @@ TEST(SharpShadows, NothingBeyondTheMapIsHighEnough) {
     EXPECT_GT(check_sharp(map, azimuth, 25, Tiling::repeat), 500U);
 }
 
-/// A unit of the whole relief is more than all hills.
+/// One unit of the whole relief is more than all hills.
 TEST(SharpShadows, OneSpikeAmongHills) {
   for (const float height : {1e3F, 1e7F}) {
     Image<float> map = noise(12, 15, 20, 10);
@@ -252,7 +252,7 @@ TEST(SharpShadows, HolesNeitherCastNorReceive) {
   map(8, 10) = NAN;
   for (const ShadowOptions& options : devices(Tiling::clamp)) {
     const Image<std::uint8_t> shadow = sharp_shadows(map.view(), {90, 45}, options);
-    // 5 high, 45°: entered at 0.5, 1.5, … 4.5 below 5.
+    // 5 high at 45°: the ray enters at 0.5, 1.5, … 4.5, below 5.
     for (int x = 0; x < 20; ++x) EXPECT_EQ(shadow(x, 10), x >= 5 && x < 10 && x != 8 ? 1 : 0) << x;
     EXPECT_EQ(count_dark(shadow), 4U);
   }
@@ -352,7 +352,7 @@ TEST(HiddenSamples, EqualThePapersLoop) {
 TEST(SoftLight, APostsShadowFadesAwayFromIt) {
   Image<float> map(400, 9);
   map(380, 4) = 200;
-  // The sun in the east, 45° high: the shadow of the post's top falls 200 cells to its west; with a
+  // The sun in the east, 45° high: the shadow of the post's top falls 200 cells to its west. With a
   // radius of 2° it fades between tan(47°) and tan(43°).
   const Image<std::uint8_t> soft = soft_light(map.view(), {90, 45}, 2, {Tiling::clamp});
   EXPECT_EQ(soft(100, 4), 255);

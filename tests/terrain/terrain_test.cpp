@@ -34,7 +34,7 @@ TerrainLook size(int width, int height) {
   return TerrainLook({.width = width, .height = height});
 }
 
-/// A renderer by this look is refused, or its frame is, and the message holds `part`.
+/// Expects that a renderer or its frame refuses this look, with `part` in the message.
 void refused(const std::string& part, const TerrainLook& look, const TerrainCamera& camera = {},
              Errc code = Errc::invalid_argument) {
   const Terrain flat(HeightMap{Image<float>(4, 4), {}});
@@ -118,10 +118,10 @@ TEST(MapView, TilesHeightsAndColoursOfAnotherSizeAsTheTerrainDoes) {
       }
       if (std::isnan(there)) {
         EXPECT_TRUE(std::isnan(view.height_at(x, y, 0))) << x << ", " << y;
-        continue;  // nothing that has a colour
+        continue;  // nothing with a colour
       }
       EXPECT_EQ(view.height_at(x, y, 0), there);
-      // Float32 may round over a texel's edge.
+      // float32 may round across a texel's edge.
       const Rgba8 color = view.color_at(x, y, 0);
       bool found = false;
       for (const double dx : {-1e-5, 1e-5})
@@ -218,7 +218,7 @@ TEST(Roll, QuarterTurnsAreThePixelsThemselves) {
       std::size_t wrong = 0;
       for (int y = 0; y < 90; ++y)
         for (int x = 0; x < 90; ++x) {
-          int u = x, v = y;  // where this pixel was before the turn
+          int u = x, v = y;  // this pixel's place before the turn
           for (int t = 0; t < (quarter + 8) % 4; ++t) {
             const int before = u;
             u = 89 - v;
@@ -232,7 +232,7 @@ TEST(Roll, QuarterTurnsAreThePixelsThemselves) {
   }
 }
 
-/// A wall across the view, coloured by where one looks at it, in a picture that is no square.
+/// A wall across the view, coloured by the place, in a picture that is not square.
 TEST(Roll, AnyAngleShowsWhatTheTurnedRaysMeet) {
   const Terrain wall = Terrain::of(
       [](double, double y) { return y < -49.5 ? 1000.0F : -1000.0F; },
@@ -247,7 +247,7 @@ TEST(Roll, AnyAngleShowsWhatTheTurnedRaysMeet) {
       for (int y = 0; y < 80; ++y)
         for (int x = 0; x < 120; ++x) {
           const double across = std::cos(roll) * (x + 0.5 - 60) - std::sin(roll) * (y + 0.5 - 40);
-          // A column's ray; the cylinder's samples lie at equal distances along it.
+          // A column's ray, with the cylinder's samples at equal distances.
           double right = 50 * across / 60;
           if (projection == Projection::cylindrical) {
             const double angle = across / 60 * kPi / 4;
@@ -268,7 +268,7 @@ TEST(Roll, TurnsTheHorizonAboutThePicturesCentre) {
     for (int y = 0; y < 80; ++y)
       for (int x = 0; x < 120; ++x) {
         const double row = 40 + std::sin(roll) * (x + 0.5 - 60) + std::cos(roll) * (y + 0.5 - 40);
-        if (std::abs(row - 52) < 0.6) continue;  // the pixel that the horizon runs through
+        if (std::abs(row - 52) < 0.6) continue;  // the horizon crosses this pixel
         EXPECT_EQ(picture.is_sky(x, y), row < 52) << x << ", " << y << " rolled by " << roll;
       }
   }
@@ -312,7 +312,7 @@ TEST(Clearance, LiftsTheCameraAboveTheGroundUnderItAlone) {
   EXPECT_EQ(altitude(1.5, 2.5, 10), 10);
 }
 
-/// Upper ends of the picture's spans: the pixels that a sample is first drawn in.
+/// The upper ends of the picture's spans, where a sample is first drawn.
 template <class Each>
 void for_each_top(const Picture& picture, Each&& each) {
   for (int y = 1; y < picture.depth.height(); ++y)
@@ -320,7 +320,7 @@ void for_each_top(const Picture& picture, Each&& each) {
       if (picture.depth(x, y) != picture.depth(x, y - 1) && !picture.is_sky(x, y)) each(x, y);
 }
 
-/// Each sample that is seen, brought back into the world by hand, falls on its pixel.
+/// Each visible sample, transformed back into the world by hand, falls on its pixel.
 void expect_matrix(const TerrainLook& options, const TerrainCamera& given) {
   std::mt19937 random(8);
   const Terrain terrain(test::random_map(128, 128, random, 0.1));
@@ -334,7 +334,7 @@ void expect_matrix(const TerrainLook& options, const TerrainCamera& given) {
     const double z = static_cast<double>(picture.depth(x, y));
     const double right = z * half * ((x + (options.classic ? 0 : 0.5)) * 2 / options.width - 1);
     const double wx = camera.x + cos * right - sin * z, wy = camera.y - sin * right - cos * z;
-    // A sample on a cell's edge is rounded either way.
+    // A sample on a cell's edge may round either way.
     if (std::abs(wx - std::round(wx)) < 1e-3 || std::abs(wy - std::round(wy)) < 1e-3) return;
     const auto c = test::product(clip, wx, static_cast<double>(terrain.height_at(wx, wy)), wy);
     const double px = (c[0] / c[3] + 1) / 2 * options.width;
@@ -365,7 +365,7 @@ TEST(Matrix, FollowsTheRollAndRefusesCylinders) {
   TerrainCamera camera{.altitude = 50, .horizon_px = 10, .roll_rad = kPi / 2};
   TerrainCamera level = camera;
   level.roll_rad = 0;
-  // A point in both pictures: turned counter-clockwise about the centre, right goes up.
+  // A point in both pictures, turned counter-clockwise about the centre: right becomes up.
   const auto pixel = [&](const TerrainCamera& c) {
     const auto q = test::product(world_to_clip(options, c), c.x + 20, 60, c.y - 100);
     return std::pair{q[0] / q[3] * 60, -q[1] / q[3] * 40};  // px from the centre
@@ -379,7 +379,7 @@ TEST(Matrix, FollowsTheRollAndRefusesCylinders) {
 }
 
 TEST(Cylinder, StretchesNothing) {
-  // A ring of posts at equal angles: as many columns apart everywhere, all of one height.
+  // A ring of posts of one height at equal angles must be the same number of columns apart.
   const Terrain posts = Terrain::of(
       [](double x, double y) {
         const double turn = std::atan2(x, -y) / (2 * kPi) * 36, r = std::hypot(x, y);
@@ -418,7 +418,7 @@ TEST(Fog, EndsInItsColour) {
   options.fog = {0.01, 0, Rgba8{9, 99, 199, 255}};
   options.scale_px = 240;
   const Picture picture(flat, {.altitude = 50, .horizon_px = 50}, options);
-  int first = 0;  // row of the ground
+  int first = 0;  // the first row of ground
   while (picture.is_sky(0, first)) ++first;
   EXPECT_EQ(first, 54);
   EXPECT_EQ(picture.colors(0, first - 1), kSky);
@@ -460,8 +460,8 @@ TEST(OddInput, FlatGroundFillsTheRowsBelowTheHorizon) {
   }
 }
 
-/// Near slopes are no stripes: each row below the horizon has ground of its own, within a pixel of
-/// where its ray meets the plane. Steps of a cell leave dozens of rows the ground of one.
+/// Near slopes have no stripes: each row below the horizon has its own ground, within a pixel of
+/// where its ray meets the plane. Steps of a cell would repeat one ground over dozens of rows.
 TEST(Steps, ArePixelsHighWithTheBilinearFilter) {
   const Terrain flat(HeightMap{Image<float>(4, 4), {}});
   for (const double fov : {0.4, kPi / 2, 2.2})
@@ -519,7 +519,7 @@ TEST(OddInput, HolesLetThroughWhatLiesBehind) {
   const TerrainLook options({.width = 32, .height = 100, .tiling = Tiling::clamp});
   const TerrainCamera camera{.x = 32, .y = 62, .altitude = 10, .horizon_px = 50};
   const Picture picture(Terrain(map), camera, options);
-  // No sample on the hole, so the wall behind it is drawn down to the ground before it.
+  // The hole has no sample, so the wall behind is drawn down to the ground in front.
   for (const float depth : picture.depth.pixels()) EXPECT_FALSE(depth > 3 && depth < 31) << depth;
   for (float& h : map.heights.pixels()) h = kNaN;
   const Picture nothing(Terrain(map), camera, options);
@@ -543,7 +543,7 @@ TEST(OddInput, HighAndFarCamerasAndLongViews) {
   TerrainLook options({.width = 64, .height = 64, .distance = 1e6, .dz = 0.01});
   const Picture high(terrain, {.altitude = 1e6, .horizon_px = 0}, options);
   EXPECT_FALSE(high.is_sky(32, 63));
-  // By whole periods away everything looks the same.
+  // Whole periods away, everything looks the same.
   options.distance = 300;
   const Picture near(terrain, {.x = 5.5, .y = 7.25, .altitude = 300, .horizon_px = 8}, options);
   const Picture far(terrain,
@@ -616,7 +616,7 @@ TEST(Targets, AreOfTheFramesSizeAndMayLieUpsideDown) {
 }
 
 TEST(OddInput, LargeMaps) {
-  // 16,384²: 1 GiB of heights, touched once; one colour for all.
+  // 16,384²: 1 GiB of heights, touched once, with one colour.
   HeightMap map{Image<float>(16384, 16384), Image<Rgba8>(1, 1)};
   map.heights(16383, 16380) = 1000;
   map.colors(0, 0) = {1, 2, 3, 255};

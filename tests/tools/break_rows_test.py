@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""papers/break_rows.py fits the sources, seen without the half hour of builds that it takes."""
+"""Checks that papers/break_rows.py fits the sources, without its half hour of builds."""
 import pathlib
 import re
 import sys

@@ -4,7 +4,7 @@ import unittest
 
 from tree import CheckedTree
 
-# What is wrong, its file, the text of the file, the line that is named, and what is said.
+# The violation, its file, the file's text, the reported line, and the message.
 WRONG = [
     ("upward include", "rastrum/core/bad.hpp", "// why\n#  include <rastrum/scene/mesh.hpp>\n",
      ":2", "core may not include scene"),

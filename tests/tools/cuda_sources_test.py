@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""tools/cuda_sources.py sees what nvcc compiles change, and nothing else."""
+"""tools/cuda_sources.py reports changes of what nvcc compiles, and nothing else."""
 import unittest
 
 from tree import Tree, run_tool

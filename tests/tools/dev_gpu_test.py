@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""`./dev gpu` with tools that only say what they were asked for: it refuses, and what it runs in which order."""
+"""`./dev gpu` with tools that only log their arguments: its refusals, and what it runs in which order."""
 import re
 import shutil
 import subprocess
@@ -40,7 +40,7 @@ class DevGpu(Tree):
                    stdin=subprocess.DEVNULL, timeout=60)
 
     def failure(self, phase):
-        """What is said where that phase fails."""
+        """Returns the message if that phase fails."""
         self.fake_machine()
         code, output = self.dev_gpu()
         self.assertEqual(code, 1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""tools/golden.py lists failed golden pictures, flickers them on a page, and accepts the actual ones."""
+"""tools/golden.py lists failed golden pictures, flickers them on a page, and accepts the new ones."""
 import shutil
 import sys
 import unittest

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""tools/gpu_part.sh with programs that only say what they are: what fails, hangs or finds no device is named."""
+"""tools/gpu_part.sh with programs that only say who they are: it names what fails, hangs or finds no device."""
 import os
 import shutil
 import subprocess
@@ -29,7 +29,7 @@ class GpuPart(Tree):
                    env={**os.environ, "PATH": f"{self.root}/tools:{os.environ['PATH']}", **environment})
 
     def results(self):
-        """Without the seconds."""
+        """Returns the results without the seconds."""
         return [line.rsplit(" after ", 1)[0] for line in (self.out / "results").read_text().splitlines()]
 
     def test_lists_its_parts(self):
@@ -46,7 +46,7 @@ class GpuPart(Tree):
         self.program("cuda_rasterizer_on_device", "exit 3")
         self.assert_says(self.part("all", self.out), "rasterizer: FAILED: exit status 3")
         self.assertEqual(self.results()[:3], ["words: passed", "rasterizer: FAILED: exit status 3", "terrain: passed"])
-        # Another run begins anew.
+        # Another run starts afresh.
         self.program("cuda_rasterizer_on_device", "")
         self.assertEqual(self.part("all", self.out)[0], 0)
         self.assertEqual(len(self.results()), len(PARTS))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""tools/kernel_budget.py names kernels that grow, refuses instructions that round freely, skips unchanged files."""
+"""tools/kernel_budget.py names kernels that grow, refuses instructions with free rounding, skips unchanged files."""
 import os
 import subprocess
 import sys
@@ -54,7 +54,7 @@ class Budget(Tree):
         self.gives()
 
     def gives(self, registers=60, stack=72, code=0x400, ftz=""):
-        """Writes stand-ins of the tools, which answer this from now on, and log each call."""
+        """Writes stand-ins of the tools, which give these answers and log each call."""
         self.write("k.ptx", PTX.format(ftz=ftz))
         self.write("k.log", LOG.format(ours=STRIDED, thrust=THRUST, registers=registers, stack=stack))
         self.write("k.elf", f"  [ 5] .text.{STRIDED} PROGBITS 000 000 {code:06x} 00 AX 0 0 128\n")
@@ -78,7 +78,7 @@ class Budget(Tree):
         return sum("-ptx" in call and "--fmad=false" in call for call in calls)
 
     def forget(self):
-        """As a fresh checkout: the record is there, results of compilations are not."""
+        """Simulates a fresh checkout: it has the record but no results of compilations."""
         for file in (self.root / "build/budget").iterdir():
             file.unlink()
 
@@ -103,7 +103,7 @@ class Budget(Tree):
         self.write("rastrum/draw.cu", "int second;\n")
         self.assertEqual(self.budget("check")[0], 0)
         self.assertEqual(self.compilations(), 1)
-        # The results of the check are the record's.
+        # The check's results become the record's.
         self.assertNotEqual(self.record(), before)
         self.assertEqual(self.compilations(), 0)
         self.forget()

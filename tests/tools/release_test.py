@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The places that say a release's version say the same one."""
+"""All places that state the release's version agree."""
 import re
 import unittest
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""tools/site.py: each page has its place in the site, its links lead somewhere, and headers become pages."""
+"""tools/site.py: each page has its place in the site, its links work, and headers become pages."""
 import shutil
 import sys
 import unittest

@@ -10,7 +10,7 @@ SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "tools" / "skipped_tests.
 
 
 def line_of(**tests):
-    """The tool's line about a run of these tests, each of which prints its text."""
+    """Returns the tool's line for a run of these tests, each of which prints its text."""
     with tempfile.TemporaryDirectory() as folder:
         script = "\n".join(f'add_test({name} "${{CMAKE_COMMAND}}" -E echo "{text}")\n'
                            f'set_tests_properties({name} PROPERTIES SKIP_REGULAR_EXPRESSION "SKIPPED")'

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Trees of a test's own, and the project's tools run on them."""
+"""Temporary trees for tests, and the project's tools run on them."""
 import pathlib
 import subprocess
 import sys
@@ -10,7 +10,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 
 def run(*command, **options):
-    """Its exit status, and what it said."""
+    """Returns the exit status and the output."""
     done = subprocess.run(command, capture_output=True, text=True, **options)
     return done.returncode, done.stdout + done.stderr
 
@@ -41,7 +41,7 @@ class Tree(unittest.TestCase):
 
 
 class CheckedTree(Tree):
-    """TOOL passes the project and the tree, or says one line."""
+    """Checks that TOOL passes the project and the tree, or prints one line."""
     TOOL = ""
 
     def check(self):

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tests of ordering fragments (LayerLists) and of blending them (LayerBlend), each by itself.
+// Tests the order of fragments (LayerLists) and their blending (LayerBlend), each by itself.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -46,7 +46,7 @@ std::vector<Arrival> arrivals(std::uint64_t seed, int count, int pixels) {
   return all;
 }
 
-/// The keys of each pixel in the order of the lists, over all windows.
+/// The keys of each pixel in the lists' order, over all windows.
 std::vector<std::vector<std::uint64_t>> drain(LayerLists<>& lists, const std::vector<Arrival>& all,
                                               bool sort, int& windows) {
   std::vector<std::vector<std::uint64_t>> pixels(64);
@@ -101,8 +101,7 @@ TEST(LayerLists, OrderBySubmission) {
   EXPECT_EQ(drain(lists, all, true, windows), expected);
 }
 
-// The filter of paper 4: a fragment overtakes at most K others, and is noted where that was too
-// few.
+// Paper 4's filter: a fragment passes at most K others, and is marked if that was too few.
 TEST(LayerLists, AFilterOvertakesSoManyAndNotesTheOthers) {
   MemoryAccount account;
   LayerLists<> lists(account);
@@ -167,7 +166,7 @@ const TransparencyOptions kExact, kUnsorted{.method = Transparency::unsorted};
 BlockColors blended(const Stack& stack, const TransparencyOptions& method, Isa isa = Isa::scalar,
                     std::uint64_t mask = ~std::uint64_t{0}) {
   const auto blend = transparency::make_blend(method, isa);
-  // Every blend is used for block after block: the first must leave nothing behind.
+  // A blend is used for several blocks; the first must leave nothing behind.
   BlockColors out;
   for (int block = 0; block < 2; ++block) {
     blend->begin(stack.behind);
@@ -237,7 +236,7 @@ TEST(Approximations, MultiLayerBlendingIsExactForFourLayersInAnyOrder) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const Stack four(seed, 4, true);
     EXPECT_LT(difference(blended(four, family::mlab4()), blended(four, kExact)), 1e-6F);
-    // With three layers kept the last but one would come behind what it hides.
+    // With three layers kept, the last but one would be behind what it hides.
     Stack five(seed, 5, false);
     std::swap(five.keys[3], five.keys[4]);
     EXPECT_LT(difference(blended(five, family::mlab4()), blended(five, kExact)), 1e-6F);
@@ -246,8 +245,8 @@ TEST(Approximations, MultiLayerBlendingIsExactForFourLayersInAnyOrder) {
   }
 }
 
-// Two layers are a measure of two points, which four moments determine: in front of either lies
-// what is in front of it, and a quarter of its own absorbance (the paper's overestimation).
+// Two layers are a measure of two points, which four moments determine. In front of each is what
+// precedes it and a quarter of its own absorbance (the paper's overestimation).
 TEST(Approximations, MomentsTellTwoLayersApart) {
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
     const Stack two(seed, 2, true);
@@ -288,7 +287,7 @@ TEST(Approximations, KeepTheAlphaOfTheWhole) {
   }
 }
 
-// The nearer a layer, the more it counts: a dark one in front of bright ones stays dark.
+// Nearer layers count more: a dark one in front of bright ones stays dark.
 TEST(Approximations, NearLayersCountMore) {
   Stack stack(8, 2, false);
   for (int i = 0; i < 64; ++i) {

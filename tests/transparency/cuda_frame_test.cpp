@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Translucent frames of --device cuda are the host's, through the façade: the pieces are the
-// device's own, and so are the shaders. In this program the device is the CPU
-// (tests/raster/CMakeLists.txt).
+// Translucent frames of --device cuda equal the host's, through the façade, with pieces and shaders
+// of the device. In this program the device is the CPU (tests/raster/CMakeLists.txt).
 #include <string>
 #include <utility>
 
@@ -59,7 +58,7 @@ TEST_F(CudaLayeredFrame, EqualsTheThreads) {
   EXPECT_GT(blended, 1000U);
 }
 
-// With little memory the picture goes in bands, and they in parts whose pieces fit.
+// With little memory the picture is drawn in bands, and bands in parts whose pieces fit.
 TEST_F(CudaLayeredFrame, AMemoryLimitChangesNothing) {
   const Viewed seen(single(shapes::soup(20000, 0.01F, 0.3F)));
   RenderOptions o = options(128, 200, Device::cuda);
@@ -74,14 +73,14 @@ TEST_F(CudaLayeredFrame, AMemoryLimitChangesNothing) {
   expect_by_device(frame, expected);
   EXPECT_GT(frame.counter("turns"), frame.counter("bands"));
   EXPECT_GT(frame.counter("bands listed"), 0U);
-  // The mesh's copy is not counted, as the mesh is not.
+  // The limit does not count the mesh or its copy.
   EXPECT_LE(frame.stats.peak_bytes, o.memory_limit + 60000 * sizeof(Vec3));
   EXPECT_GT(expected.stats.peak_bytes, o.memory_limit + 60000 * sizeof(Vec3));
   EXPECT_TRUE(same_bits(take(threads, seen), expected));
 }
 
-// Where some blocks are deep the images are made when the host has seen to those, and once: layers
-// over a picture would show twice.
+// With deep blocks, the images are finished once, after the host has resolved these. Layers over a
+// picture would otherwise show twice.
 TEST_F(CudaLayeredFrame, DeepBlocksOverAPictureEqualTheThreads) {
   constexpr int kSize = 40;
   Scene many = single(shapes::soup(7000, 0.6F, 1.2F));
@@ -109,7 +108,7 @@ TEST_F(CudaLayeredFrame, DeepBlocksOverAPictureEqualTheThreads) {
   EXPECT_EQ(frame.counter("bands listed"), 0U);
 }
 
-// Frames that the device has no form of are drawn by the CPU, which says why.
+// Frames that the device cannot draw go to the CPU, with a reason.
 TEST_F(CudaLayeredFrame, TheRestIsTheCPUs) {
   const Viewed seen(single(shapes::soup(20, 0.3F, 0.5F)));
   const auto expect = [&](const char* why, const RenderOptions& o) {

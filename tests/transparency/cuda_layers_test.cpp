@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Layers on a device are the host's: the same order and the same bits of every colour as the scalar
-// path, in each tier, whatever the budget. Where there is no GPU the device is the CPU
-// (CMakeLists.txt), with the code that nvcc compiles.
+// Layers on a device equal the host's scalar path: the same order and bits of every colour, in each
+// tier and with any budget. Without a GPU the device is the CPU (CMakeLists.txt), with the code for
+// nvcc.
 #include <algorithm>
 #include <bit>
 #include <cstdint>
@@ -43,7 +43,7 @@ namespace {
 using transparency::DeviceLayerCounts;
 using transparency::DeviceLayerTuning;
 
-/// Pieces as the host's setup makes them, and the opaque surface.
+/// Pieces from the host's setup, and the opaque surface.
 LayersFrame frame_of(const LayerScene& scene, LayerProgram& program, int width, int height) {
   LayersFrame f;
   f.width = width;
@@ -89,7 +89,7 @@ LayersFrame frame_of(const LayerScene& scene, LayerProgram& program, int width, 
   return f;
 }
 
-/// A generated scene that the functors of layers_on_device.cu can paint.
+/// A generated scene that layers_on_device.cu's functors can colour.
 LayerScene scene_of(std::uint64_t seed, int width, int height, int most_fragments) {
   LayerScene scene = generate_layers(seed, width, height, most_fragments);
   if (scene.paint == Paint::gradient) scene.paint = Paint::triangle;
@@ -123,7 +123,7 @@ struct Way {
 
 class CudaLayers : public testing::Test {
  protected:
-  /// Blends `start` in that way, to the host's bits.
+  /// Blends `start` in that way and expects the host's bits.
   static DeviceLayerCounts expect_host(LayersFrame start, const LayerPicture& host, const Way& way,
                                        const TransparencyOptions& options = {}) {
     const DeviceLayerCounts counts = blend_on_device(start, options, way.tuning, way.band_rows);
@@ -140,7 +140,7 @@ class CudaLayers : public testing::Test {
   }
 };
 
-/// Each tier alone, all of them at once, budgets that take many turns, and bands.
+/// Each tier alone, all at once, budgets that need many turns, and bands.
 const Way kWays[] = {
     {"as it is", {}},
     {"high density alone", {0, 2048, 0}},
@@ -178,7 +178,7 @@ TEST_F(CudaLayers, EqualTheHostInEveryTierAndBudget) {
         }
         all.add(counts);
         if (way.tuning.bytes == 1) {
-          // A turn holds one block, and what lies empty beside it.
+          // A turn holds one block, and empty ones beside it.
           EXPECT_GE(counts.turns, counts.low_blocks + counts.high_blocks + counts.deep_blocks);
         }
       }
@@ -193,7 +193,7 @@ TEST_F(CudaLayers, EqualTheHostInEveryTierAndBudget) {
   EXPECT_GT(all.deep_blocks, 0U);
 }
 
-/// Pixels that two pieces of one triangle cover.
+/// The number of pixels that two pieces of one triangle cover.
 int pixels_covered_twice(const LayersFrame& f) {
   int count = 0;
   for (std::size_t i = 0; i + 1 < f.pieces.size(); ++i)
@@ -208,7 +208,7 @@ int pixels_covered_twice(const LayersFrame& f) {
   return count;
 }
 
-// Pieces of one clipped triangle may overlap by a snapped vertex; they are one layer.
+// Pieces of a clipped triangle may overlap by a snapped vertex; they are one layer.
 TEST_F(CudaLayers, OverlappingPiecesOfAClippedTriangleAreOneLayer) {
   const int size = 64;
   const LayerScene scene = overlapping_pieces();
@@ -246,7 +246,7 @@ TEST_F(CudaLayers, UnsortedAndThresholdsEqualTheHost) {
   }
 }
 
-// Two thousand layers a pixel, in no order: more than shared memory holds, without being asked for.
+// Two thousand layers a pixel in random order, more than shared memory holds.
 TEST_F(CudaLayers, DeepStacksGoThroughTheDevicesMemory) {
   const int size = 16;
   const LayerScene scene = layer_stack(5, 2000, 0.01, size, size);
@@ -264,7 +264,7 @@ TEST_F(CudaLayers, DeepStacksGoThroughTheDevicesMemory) {
   }
 }
 
-// Whatever wrote the records in whatever order, nothing of it is left in the picture or the counts.
+// The order of the records leaves no trace in picture and counts.
 TEST_F(CudaLayers, OrderOfPiecesDoesNotMatter) {
   const int width = 40, height = 40;
   Random r(3);
@@ -289,7 +289,7 @@ TEST_F(CudaLayers, OrderOfPiecesDoesNotMatter) {
   }
 }
 
-// A frame like the one before asks for no memory.
+// A frame like the one before allocates no memory.
 TEST_F(CudaLayers, ASteadyFrameAllocatesNothing) {
   const int size = 64;
   const LayerScene scene = scene_of(0, size, size, 100000);
@@ -297,8 +297,8 @@ TEST_F(CudaLayers, ASteadyFrameAllocatesNothing) {
   EXPECT_EQ(growth_of_a_second_frame(frame_of(scene, program, size, size)), 0U);
 }
 
-// Queues and counters on the device instead of sizes that the host waits for: the listing's keys,
-// colours and counts, whether the queues have room, or one of them has not.
+// Queues and counters on the device, instead of sizes that the host waits for, give the listing's
+// keys, colours and counts, whether or not all queues have room.
 TEST_F(CudaLayers, QueuesEqualTheListing) {
   struct Room {
     const char* name;
@@ -373,7 +373,7 @@ TEST_F(CudaLayers, WhatADeviceDoesNotHaveIsRefused) {
 
 TEST_F(CudaLayers, TeamsSortAndSumUp) {
   Random r(1);
-  // Up to 256 a team goes other ways than beyond.
+  // Up to 256 keys a team sorts in other ways than beyond.
   std::vector<std::size_t> sizes{100, 128, 129, 200, 255, 256, 257, 300, 513, 1000, kMostTeamKeys};
   for (std::size_t n = 0; n <= 65; ++n) sizes.push_back(n);
   for (const std::size_t n : sizes) {
@@ -387,8 +387,7 @@ TEST_F(CudaLayers, TeamsSortAndSumUp) {
     EXPECT_EQ(got.sorted, sorted);
     std::partial_sum(values.begin(), values.end(), sums.begin() + 1);
     EXPECT_EQ(got.sums, sums);
-    // Values go with their keys; equal keys may change places, the largest with what fills the
-    // room.
+    // Values follow their keys. Equal keys may swap, the largest also with the padding.
     for (const auto* places : {&got.places, &got.order})
       for (std::size_t i = 0; i < n; ++i) {
         if (sorted[i] == 0xFFFFFFFFU) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Several samples a pixel of --device cuda are the serial device's, through the façade: opaque,
+// Several samples a pixel with --device cuda equal the serial device's, through the façade: opaque,
 // blended, and in little memory. In this program the device is the CPU
 // (tests/raster/CMakeLists.txt).
 #include <cstdint>
@@ -101,7 +101,7 @@ TEST_P(CudaSampled, LayersEqualSerial) {
   EXPECT_GT(repaired, 0U);
 }
 
-// Pieces of one clipped triangle that overlap are one layer at every sample.
+// Overlapping pieces of a clipped triangle are one layer at every sample.
 TEST_P(CudaSampled, OverlappingPiecesEqualSerial) {
   const LayerScene layers = overlapping_pieces();
   const Viewed seen(single(layers.mesh), layers.camera);
@@ -112,7 +112,7 @@ TEST_P(CudaSampled, OverlappingPiecesEqualSerial) {
   expect_by_device(take(cuda, seen), take(serial, seen));
 }
 
-// Triangles of all sizes, by a thread, a team and by tiles; bands in little memory.
+// Triangles of all sizes, by a thread, by a team and by tiles; bands in little memory.
 TEST_P(CudaSampled, SizesAndMemoryChangeNothing) {
   constexpr int kWidth = 100, kHeight = 150;
   const Viewed seen(single(shapes::soup(250, 0.01F, 1.2F)));
@@ -136,7 +136,7 @@ TEST_P(CudaSampled, SizesAndMemoryChangeNothing) {
       const LayerPicture frame = take(cuda, seen);
       expect_by_device(frame, expected);
       EXPECT_EQ(frame.counter("tile pairs") > 0, cut.large_px == 400 && opacity == 1);
-      // The mesh's copy is not counted, as the mesh is not.
+      // The limit does not count the mesh or its copy.
       if (cut.limit == 0) continue;
       EXPECT_LE(frame.stats.peak_bytes, cut.limit + 750 * sizeof(Vec3));
       if (GetParam() == 16) {
@@ -146,7 +146,7 @@ TEST_P(CudaSampled, SizesAndMemoryChangeNothing) {
   }
 }
 
-// Bands whose pieces do not fit go in parts, in which planes lie apart.
+// Bands whose pieces do not fit are drawn in parts, in which planes are apart.
 TEST_F(CudaSamples, PartsOfABandEqualTheWhole) {
   const Viewed seen(single(shapes::soup(40000, 0.01F, 0.04F)));
   RenderOptions o = options(100, 100, 4, Device::cuda);
@@ -164,7 +164,7 @@ TEST_F(CudaSamples, PartsOfABandEqualTheWhole) {
   EXPECT_GT(frame.counter("turns"), 4U);
 }
 
-// Blocks with more records than a team of high density takes, and some with fewer.
+// Blocks with more records than the largest team takes, and some with fewer.
 TEST_F(CudaSamples, DeepBlocksEqualTheThreads) {
   const Viewed seen(single(shapes::soup(9000, 0.2F, 0.6F)));
   RenderOptions o = options(28, 20, 4, Device::cuda);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Exact transparency is exact: in every pixel of every scene it equals a sort of all fragments by
-// the visibility key, blended in float64; and it is the same bits over threads, rasterizers and
-// tile sizes, and in whatever order (up to ties) the triangles came.
+// Exact transparency equals, in every pixel of every scene, a sort of all fragments by visibility
+// key blended in float64. It has the same bits for all threads, rasterizers, tile sizes and, up to
+// ties, orders of triangles.
 #include <algorithm>
 #include <cstdint>
 #include <map>
@@ -24,8 +24,8 @@
 namespace rastrum::test::exact_test {
 namespace {
 
-/// Renderers that must draw the same bits: rasterizers that own tiles, at all their tile sizes,
-/// with 1, 2 and 8 threads; and on each instruction set.
+/// Renderers that must draw the same bits: rasterizers that own tiles, with all tile sizes and 1, 2
+/// and 8 threads; on each instruction set.
 std::vector<RenderOptions> relatives(const RenderOptions& base, Isa isa) {
   struct Way {
     const char* rasterizer;
@@ -61,7 +61,7 @@ RenderOptions options(const Size& size) {
   return RenderOptions({.width = size.width, .height = size.height, .background = size.background});
 }
 
-// Around the block (8) and the bin (64); the smallest ones bear the deepest scenes.
+// Around the block (8) and the bin (64); the deepest scenes use the smallest.
 constexpr Size kSizes[] = {
     {1, 1, {0, 0, 0, 0}},         {8, 8, {1, 1, 1, 1}},     {17, 5, {0.2F, 0.3F, 0.4F, 0.5F}},
     {37, 53, {0, 0, 0, 0}},       {64, 64, {0, 0, 0, 1}},   {100, 20, {0.9F, 0.1F, 0.5F, 0.25F}},
@@ -72,7 +72,7 @@ LayerImage oracle_of(const LayerScene& scene, const Size& size) {
   return test::oracle_of(scene, size.width, size.height, 1, size.background);
 }
 
-/// Scenes a size: ten of each kind; of a small share the sizes share the kinds.
+/// Scenes per size: ten of each kind. With a small test share, the sizes share the kinds.
 int scene_count() {
   if (test_share() < 100) return 2 + kLayerKinds / static_cast<int>(std::size(kSizes));
   return share_of(10 * kLayerKinds);
@@ -112,7 +112,7 @@ TEST_P(Exact, EqualsTheOracleEverywhere) {
       EXPECT_TRUE(r) << what;
       good = good && r;
     };
-    // Each instruction set against the oracle; the whole family on one of them, in turn.
+    // Each instruction set against the oracle; the whole family on one of them in turn.
     for (std::size_t isa = 0; isa < by_isa.size(); ++isa) {
       auto& family = by_isa[isa];
       const bool whole = static_cast<std::size_t>(i) % by_isa.size() == isa;
@@ -144,14 +144,14 @@ TEST_P(Exact, EqualsTheOracleEverywhere) {
     }
     if (!good && ++failures == 3) FAIL() << "three scenes failed; the rest was not drawn";
   }
-  // No kind of scene may have become invisible.
+  // Each kind of scene must have visible fragments.
   if (size.width < 8 || scene_count() < 10 * kLayerKinds) return;
   EXPECT_EQ(fragments_of_kind.size(), static_cast<std::size_t>(kLayerKinds));
   for (const auto& [kind, fragments] : fragments_of_kind) EXPECT_GT(fragments, 0U) << kind;
   EXPECT_GT(most_layers, size.width <= 17 ? 1000U : 10U);
 }
 
-// The surfaces of a translucent picture are those of the opaque one.
+// A translucent picture's ids and depths are those of opaque surfaces.
 TEST_P(Exact, IdsAndDepthAreThoseOfOpaqueSurfaces) {
   const Size size = GetParam();
   Painter renderer(options(size));
@@ -190,7 +190,7 @@ TEST_P(Exact, OrderOfSubmissionDecidesOnlyTies) {
   for (int i = 0; i < 4 * kLayerKinds; ++i) {
     LayerScene scene = generate_layers(seed_of(size, i), size.width, size.height);
     SCOPED_TRACE(scene.kind);
-    scene.holes = false;  // holes and Paint::pixel are by id
+    scene.holes = false;  // holes and Paint::pixel depend on ids
     if (scene.paint == Paint::pixel) scene.paint = Paint::triangle;
     const LayerImage oracle = oracle_of(scene, size);
     std::vector<std::size_t> order(scene.size());
@@ -225,7 +225,7 @@ TEST_P(Exact, OrderOfSubmissionDecidesOnlyTies) {
   EXPECT_GT(seen, 0U);
 }
 
-// Twice the same renderer, and one that has drawn other things before.
+// The same renderer twice, after other scenes.
 TEST_P(Exact, NothingOfAnEarlierFrameIsLeft) {
   const Size size = GetParam();
   Painter used(options(size));
@@ -247,7 +247,7 @@ INSTANTIATE_TEST_SUITE_P(Sizes, Exact, testing::ValuesIn(kSizes), [](const auto&
   return std::to_string(p.param.width) + "x" + std::to_string(p.param.height);
 });
 
-// Bins that hold thousands of triangles are drawn in parts, also where those cover few samples.
+// Bins with thousands of triangles are drawn in parts, also if those cover few samples.
 TEST(ExactBins, DenseOnesEqualTheOracle) {
   const Size size{100, 70, {0.5F, 0.5F, 0.5F, 1}};
   LayerScene scene;
@@ -275,7 +275,7 @@ LayerPicture picture_of(const LayerScene& scene, const Size& size) {
   return take(renderer, program);
 }
 
-// Light without alpha adds up, whatever lies before it in no more than its own share.
+// Light without alpha adds up and hides nothing behind it.
 TEST(ExactColours, ColourWithoutAlphaIsAdded) {
   const Size size{16, 16, {0, 0, 0, 1}};
   LayerScene scene = layer_stack(3, 3, 0.5, size.width, size.height);
@@ -283,7 +283,7 @@ TEST(ExactColours, ColourWithoutAlphaIsAdded) {
   EXPECT_EQ(picture_of(scene, size).color(5, 5), (Vec4{0.75F, 0, 0.375F, 1}));
 }
 
-// However little of it there is, a colour over nothing keeps its hue.
+// A colour over nothing keeps its hue, however faint.
 TEST(ExactColours, FaintLayersKeepTheirHue) {
   const Size size{16, 16, {0, 0, 0, 0}};
   for (const float alpha : {1e-3F, 1e-6F, 1e-9F}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pictures of layers that have to be exact, whichever instruction set and rasterizer draws them.
+// Pictures of layers that must be exact on every instruction set and rasterizer.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,6 @@
 
 namespace rastrum::test {
 
-/// The oracle's picture of a scene.
 [[nodiscard]] inline LayerImage oracle_of(const LayerScene& scene, int width, int height,
                                           int samples, Vec4 background,
                                           LayerOrder order = LayerOrder::depth) {
@@ -31,7 +30,7 @@ namespace rastrum::test {
   return o.rasterizer + " " + std::to_string(o.tuning.tile_px) + ", " + name_of(o);
 }
 
-/// The picture that take_by(painter) takes is the oracle's, and the same bits over instruction
+/// Expects that take_by(painter)'s picture is the oracle's, with the same bits on all instruction
 /// sets, threads and tiles.
 template <class Take>
 void expect_exact(RenderOptions o, const LayerImage& oracle, Check check, const Take& take_by) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Translucent scenes through the façade: generated ones whose alphas come from materials, vertex
-// colours and opacity, and real files with their materials. The oracle's fragments get their
-// colours from the shaders, called for one fragment at a time on the scalar path (alpha_test and
-// material_test hold those); which fragments there are, and how they make a pixel, is its own.
+// Translucent scenes through the façade: generated ones with alphas from materials, vertex colours
+// and opacity, and real files with their materials. The oracle takes colours from the shaders,
+// called for single fragments on the scalar path (alpha_test and material_test test those). It
+// finds and blends the fragments itself.
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -33,7 +33,7 @@
 namespace rastrum::test::facade_test {
 namespace {
 
-/// Shades one fragment at a time, as the façade's shader of these options would.
+/// Shades one fragment at a time, like the façade's shader for these options.
 class Fragments {
  public:
   Fragments(const SceneView& scene, const Camera& camera, const RenderOptions& o)
@@ -120,7 +120,7 @@ class Fragments {
   raster::ShaderScratch scratch_;
 };
 
-/// Faces that the `material` shader leaves out: backs of single-sided materials.
+/// The faces that `material` leaves out: backs of single-sided materials.
 Cull cull_of(const InstanceView& instance, const SceneView& scene, Shader shader) {
   if (shader != Shader::material || scene.materials.empty() ||
       !instance.mesh()->face_materials.empty() ||
@@ -172,7 +172,7 @@ LayerImage shaded_oracle(const SceneView& scene, const Camera& camera, const Ren
   return image;
 }
 
-/// `layers` as a scene for the façade: straight vertex colours, and a material for opaque faces.
+/// `layers` as a façade scene: straight vertex colours, and a material for opaque faces.
 Scene facade_scene(const LayerScene& layers) {
   Scene scene = single(layers.mesh);
   Mesh& mesh = scene.meshes[0];
@@ -188,7 +188,7 @@ Scene facade_scene(const LayerScene& layers) {
   return scene;
 }
 
-// Alpha = opacity, and for blended materials · vertex alpha; colours are the shader's · alpha.
+// Alpha = opacity, times vertex alpha for blended materials. Colours are the shader's, times alpha.
 TEST(Facade, GeneratedScenesEqualTheOracle) {
   constexpr int kWidth = 61, kHeight = 47;
   const int scenes = share_of(100, 2 * kLayerKinds);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Methods that are not exact: blending without sorting equals an oracle that does the same; paper
-// 4's filter is right wherever it does not mark a pixel, and the marks are counted; the threshold
-// of alpha costs no more than it says.
+// Methods that are not exact. Unsorted blending equals an oracle that does the same. Paper 4's
+// filter is right except at marked pixels, and the marks are counted. An alpha threshold costs no
+// more than it allows.
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -22,7 +22,7 @@ namespace rastrum::test::filter_test {
 namespace {
 
 constexpr int kWidth = 48, kHeight = 40;
-/// Little more than the least that a picture can be drawn in.
+/// Slightly more than the least memory for a picture.
 constexpr std::uint64_t kLittleMemory = std::uint64_t{5} << 19;
 
 RenderOptions options(const TransparencyOptions& method) {
@@ -36,7 +36,7 @@ int scene_count() {
   return share_of(200, 2 * kLayerKinds);
 }
 
-/// f(i, scene, program) of the first so many scenes.
+/// Calls f(i, scene, program) for the first `count` scenes.
 template <class F>
 void for_each_scene(int count, const F& f, int first = 0, int step = 1) {
   for (int i = first; i < count; i += step) {
@@ -51,7 +51,8 @@ void for_each_scene(int count, const F& f, int first = 0, int step = 1) {
 
 TEST(Unsorted, EqualsTheOracleThatBlendsAsSubmitted) {
   RenderOptions o = options({.method = Transparency::unsorted});
-  // A scene is drawn on each instruction set in one way, and on one of them in all: both in turn.
+  // Each instruction set draws a scene in one way, and one of them draws it in all; both take
+  // turns.
   constexpr std::size_t kWays = 4;
   std::vector<std::vector<Painter>> by_isa;
   for (const Isa isa : available_isas()) {
@@ -85,7 +86,7 @@ TEST(Unsorted, EqualsTheOracleThatBlendsAsSubmitted) {
 
 TEST(DepthFilter, IsRightWhereItMarksNothing) {
   Painter exact(options({.method = Transparency::exact}));
-  // Blocks of more fragments than memory go by planes, which are filtered and then repaired.
+  // Blocks with more fragments than fit go by planes, which are filtered and then repaired.
   RenderOptions with_little_memory = options({.method = Transparency::exact});
   with_little_memory.memory_limit = kLittleMemory;
   Painter repairing(with_little_memory);
@@ -125,7 +126,7 @@ TEST(DepthFilter, IsRightWhereItMarksNothing) {
       EXPECT_TRUE(same_images(picture, right, kVisible));
     }
   });
-  // Marks are not made for nothing, and a longer filter makes fewer.
+  // Marks find real errors, and a longer filter makes fewer.
   EXPECT_GT(differing, 1000U);
   EXPECT_GT(repaired, 1000U);
   EXPECT_GT(wrong[0], wrong[1]);
@@ -133,7 +134,7 @@ TEST(DepthFilter, IsRightWhereItMarksNothing) {
   EXPECT_GE(wrong[2], wrong[3]);
 }
 
-// Fragments of a region, of a block, and planes of a block: the same order, right or wrong.
+// Fragments of a region, of a block, or planes of a block: the same order, right or wrong.
 TEST(DepthFilter, IsTheSameHoweverManyFragmentsGoTogether) {
   std::uint64_t marked = 0, by_planes = 0;
   for (const int k : {1, 3, 8}) {
@@ -146,7 +147,7 @@ TEST(DepthFilter, IsTheSameHoweverManyFragmentsGoTogether) {
     SCOPED_TRACE(k);
     for_each_scene(scene_count(), [&](int, const LayerScene&, LayerProgram& program) {
       const LayerPicture a = take(whole, program), b = take(parts, program);
-      // Walks beyond the first begin with what memory holds.
+      // Later walks begin with what memory holds.
       if (b.counter("windows") != 0) return;
       EXPECT_TRUE(same_images(a, b));
       marked += a.error_pixels();
@@ -157,7 +158,7 @@ TEST(DepthFilter, IsTheSameHoweverManyFragmentsGoTogether) {
   EXPECT_GT(by_planes, 100U);
 }
 
-// The marks are the same whoever draws. The picture has more than one bin, else one thread draws
+// The marks do not depend on the threads. The picture has several bins, else one thread would draw
 // it.
 TEST(DepthFilter, MarksDoNotDependOnThreads) {
   constexpr int kWide = 200, kHigh = 150;
@@ -184,7 +185,7 @@ TEST(DepthFilter, MarksDoNotDependOnThreads) {
   }
 }
 
-// A threshold may only take the light that a nearly opaque pixel still lets through.
+// A threshold may only remove the light that a nearly opaque pixel still transmits.
 TEST(AlphaThreshold, CostsNoMoreThanItLetsThrough) {
   Painter exact(options({.method = Transparency::exact}));
   std::uint64_t changed = 0;
@@ -202,7 +203,7 @@ TEST(AlphaThreshold, CostsNoMoreThanItLetsThrough) {
             {std::abs(x.x - y.x), std::abs(x.y - y.y), std::abs(x.z - y.z), std::abs(x.w - y.w)});
         ASSERT_LE(off, through + 1e-6) << "pixel " << p;
         changed += off > 0;
-        // Straight colours over a nearly opaque alpha, each rounded to 8 bits.
+        // Straight colours with a nearly opaque alpha, each rounded to 8 bits.
         const Rgba8 u = a.color8.pixels()[p], v = b.color8.pixels()[p];
         const int steps = std::max(
             {std::abs(u.r - v.r), std::abs(u.g - v.g), std::abs(u.b - v.b), std::abs(u.a - v.a)});
@@ -213,8 +214,8 @@ TEST(AlphaThreshold, CostsNoMoreThanItLetsThrough) {
   EXPECT_GT(changed, 1000U);
 }
 
-/// The colours of a program with one alpha, of which it says or does not say that it is one, and
-/// how many fragments were shaded.
+/// The colours of a program with one alpha, with or without telling so, and the number of shaded
+/// fragments.
 class OneAlpha final : public raster::BlockShader {
  public:
   OneAlpha(const raster::BlockShader& inner, float alpha, bool says)
@@ -245,12 +246,12 @@ class OneAlpha final : public raster::BlockShader {
   mutable std::atomic<std::uint64_t> shaded_ = 0;
 };
 
-// The layers that are left out are those of the serial device, which goes through them one by one,
-// and what is left out costs no shading.
+// The same layers are left out as on the serial device, which walks them one by one, and they are
+// not shaded.
 TEST(AlphaThreshold, LeavesOutTheSameLayersHoweverTheyAreShaded) {
   constexpr float kAlphas[] = {0.02F, 0.3F, 0.5F, 0.9F, 1.0F};
   std::uint64_t all = 0, said = 0, not_said = 0;
-  // Fewer scenes: each kind with one of the two.
+  // With a small share each kind has one of the two.
   const int step = test_share() < 100 ? 2 : 1;
   int first = 0;
   for (const float threshold : {1 - 1.0F / 128, 0.75F}) {
@@ -283,7 +284,7 @@ TEST(AlphaThreshold, LeavesOutTheSameLayersHoweverTheyAreShaded) {
         EXPECT_TRUE(same_bits(take(renderer, program, says), expected)) << kAlphas[i % 5];
         EXPECT_TRUE(same_bits(take(renderer, program, is_silent), expected)) << kAlphas[i % 5];
       }
-      // Each pixel takes at most `most` layers; opaque surfaces are shaded as ever.
+      // Each pixel takes at most `most` layers. Opaque surfaces are always shaded.
       std::uint32_t most = 0;
       for (float through = 1; through > 1 - threshold; ++most) through *= 1 - kAlphas[i % 5];
       std::uint64_t left_out = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The oracle of transparency itself, against cases worked out by hand.
+// The oracle of transparency against cases worked out by hand.
 #include "tests/support/layer_oracle.hpp"
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 namespace rastrum::test::layer_oracle_test {
 namespace {
 
-/// The rectangle [x0, x1) × [0, 4) px, upper and lower half of it under one id.
+/// The rectangle [x0, x1) × [0, 4) px; its two triangles have one id.
 std::vector<SnappedTriangle> wall(std::int64_t id, double x0, double x1, float left, float right) {
   const auto at = [](double x, double y, float depth) {
     return SnappedVertex{std::llround(x * 256), std::llround(y * 256), depth};
@@ -26,7 +26,7 @@ std::vector<SnappedTriangle> flat(std::int64_t id, float depth) {
   return wall(id, 0, 4, depth, depth);
 }
 
-/// 4 × 4 pixels in which triangle i has colour `colors[i]`.
+/// 4 × 4 pixels in which triangle i has the colour `colors[i]`.
 struct Case {
   std::vector<SnappedTriangle> triangles;
   std::vector<Rgba64> colors;
@@ -65,7 +65,7 @@ TEST(LayerOracle, NearerLayersAreInFront) {
   Case c{{}, {kGreen, kRed}, {}, {0.5, 0.5, 0.5, 0.5}};
   c.add(flat(0, 0.25F)).add(flat(1, 0.75F));
   const LayerImage image = c.blend();
-  // Red first, green through 3/4, the background through 3/8.
+  // Red in front, green through 3/4, the background through 3/8.
   for (const Rgba64& pixel : image.color)
     expect_color(pixel, {0.25 + 0.1875, 0.375 + 0.1875, 0.1875, 0.25 + 0.375 + 0.1875});
   EXPECT_EQ(image.ids[5], 1);
@@ -98,7 +98,7 @@ TEST(LayerOracle, FirstSubmittedIsInFrontAtEqualDepth) {
 }
 
 TEST(LayerOracle, OpaqueSurfacesHideWhatHasASmallerKey) {
-  // 1 and 3 lie in the opaque 2's plane: 1 was submitted before it and survives.
+  // 1 and 3 are in the plane of the opaque 2. 1 was submitted before it and survives.
   Case c{{}, {kRed, kGreen, kBlue, kGreen, kRed}, {2}, {1, 1, 1, 1}};
   c.add(flat(0, 0.25F)).add(flat(1, 0.5F)).add(flat(2, 0.5F)).add(flat(3, 0.5F));
   const LayerImage image = c.blend();
@@ -109,14 +109,14 @@ TEST(LayerOracle, OpaqueSurfacesHideWhatHasASmallerKey) {
   // The oracle ignores the alpha of an opaque surface's colour.
   c.colors[2] = {0, 0, 1, 0.25};
   expect_color(c.blend().color[7], {0, 0.5, 0.5, 1});
-  // Behind the opaque surface equal depths decide nothing.
+  // Behind an opaque surface, equal depths do not matter.
   Case hidden{{}, {kRed, kRed, kBlue}, {2}, {}};
   hidden.add(flat(0, 0.25F)).add(flat(1, 0.25F)).add(flat(2, 0.5F));
   EXPECT_EQ(hidden.blend().tied[0], 0);
 }
 
 TEST(LayerOracle, PlanesCrossWithinThePicture) {
-  // 0 rises to the right, 1 is level: 0 is in front at the third and fourth column.
+  // 0 slopes to the right, 1 is level: 0 is in front at the third and fourth column.
   Case c{{}, {kRed, kGreen}, {}, {}};
   c.add(wall(0, 0, 4, 0, 1)).add(flat(1, 0.5F));
   const LayerImage image = c.blend();
@@ -128,7 +128,8 @@ TEST(LayerOracle, PlanesCrossWithinThePicture) {
 TEST(LayerOracle, TheLaterIsInFrontWithoutSorting) {
   Case c{{}, {kRed, kGreen, kBlue, kGreen}, {2}, {}};
   c.add(flat(0, 0.9F)).add(flat(1, 0.8F)).add(flat(2, 0.3F)).add(flat(3, 0.1F));
-  // 3 is hidden; 1 lies over 0 although it is farther, both over the opaque 2, submitted later.
+  // 3 is hidden. 1 was submitted after 0 and so lies over it, although it is farther; both over the
+  // opaque 2.
   expect_color(c.blend(LayerOrder::submission).color[3], {0.125, 0.5, 0.375, 1});
   expect_color(c.blend(LayerOrder::depth).color[3], {0.25, 0.375, 0.375, 1});
 }
@@ -166,7 +167,7 @@ TEST(LayerOracle, StandardPositionsAreRooks) {
   EXPECT_THROW((void)standard_positions(2), std::invalid_argument);
 }
 
-// The left edge runs through the centres of the second column and owns the samples on it.
+// The left edge runs through the centres of the second column and owns their samples.
 TEST(LayerOracle, SamplesAreCoveredOneByOne) {
   Case c{{}, {kBlue}, {}, {}};
   c.add(wall(0, 1.5, 4, 0.5F, 0.5F));
@@ -190,7 +191,7 @@ TEST(LayerOracle, DepthIsThatOfTheSample) {
   c.add(wall(0, 0, 4, 0, 1)).add(flat(1, 0.375F));
   c.samples = 4;
   const LayerImage image = c.blend();
-  // Samples right of the centre have red in front, (0.25, 0, 0.75); the others blue.
+  // Samples right of the centre have red in front, (0.25, 0, 0.75); the others have blue.
   expect_color(image.color[5], {0.125, 0, 0.875, 1});
   EXPECT_EQ(image.depth[5], 0.375F + 0.25F * 6 / 16);
   EXPECT_EQ(image.ids[5], 0);
@@ -205,8 +206,8 @@ TEST(LayerOracle, ShadesAtTheCentreOrTheFirstCoveredSample) {
     points.push_back(p);
     return kRed;
   };
-  // All that lies right of x = 1.6 px: in column 1 not the centre, but the samples (6, −2) and
-  // (2, 6), of which the former is the first.
+  // Everything right of x = 1.6 px. In column 1 this misses the centre but covers the samples (6,
+  // −2) and (2, 6); (6, −2) is the first.
   const std::array triangle{
       SnappedTriangle{{{410, -99999, 1}, {999999, 0, 1}, {410, 99999, 1}}, 0}};
   in.triangles = triangle;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Real meshes, and a ball of hair, drawn translucent: every fragment in its place. From the default
-// camera, and from so near that triangles cross the near plane and the guard band.
+// Real meshes and a ball of hair, drawn translucent, against the oracle: from the default camera,
+// and from so near that triangles cross the near plane and the guard band.
 #include <cstdint>
 #include <filesystem>
 #include <numeric>
@@ -24,7 +24,7 @@ namespace {
 
 constexpr int kWidth = 203, kHeight = 149;
 
-/// All triangles of `scene` in world space, in colours at random with `alpha`.
+/// All triangles of `scene` in world space, with random colours of `alpha`.
 LayerScene in_colors(const Scene& scene, float alpha) {
   LayerScene out;
   out.kind = "mesh";
@@ -91,7 +91,7 @@ TEST_P(LayeredMeshes, EqualTheOracle) {
 
 INSTANTIATE_TEST_SUITE_P(Shared, LayeredMeshes, testing::ValuesIn(kRealMeshes), name_of_file);
 
-// In `./dev check --full` paper 4's, of 2.88 million triangles.
+// In `./dev check --full` this is paper 4's, with 2.88 million triangles.
 TEST(LayeredShapes, HairballEqualsTheOracle) {
   if (test_share() < 100) GTEST_SKIP() << kOnlyWhole;
   if (!is_full())

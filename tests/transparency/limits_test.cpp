@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// No depth is too deep: thousands of layers, also where the memory is limited to far less than
-// their fragments would take.
+// Thousands of layers, also with a memory limit far below what their fragments need.
 #include <algorithm>
 #include <cstdint>
 #include <optional>
@@ -28,7 +27,7 @@ RenderOptions options(int size, std::uint64_t limit, int threads, const char* ra
                        {.memory_limit = limit, .threads = threads}, {.rasterizer = rasterizer});
 }
 
-/// The frame, which keeps to the limit; nothing where it was refused because no part of it fits.
+/// The frame, within the limit; empty if it was refused because no part fits.
 std::optional<LayerPicture> take_within(Painter& renderer, LayerProgram& program) {
   const std::uint64_t limit = renderer.options().memory_limit;
   try {
@@ -43,7 +42,7 @@ std::optional<LayerPicture> take_within(Painter& renderer, LayerProgram& program
 }
 
 TEST(Limits, TenThousandLayers) {
-  constexpr int kSize = 32;  // 10 million fragments; at 64² they only take four times as long
+  constexpr int kSize = 32;  // 10 million fragments; 64² would only take four times as long
   const int layers = std::min(share_of(10000, 100), 10000);
   const LayerScene scene = layer_stack(11, layers, 4.0 / layers, kSize, kSize);
   const LayerImage oracle = oracle_of(scene, kSize, kSize, 1, {1, 1, 1, 1});
@@ -67,7 +66,7 @@ TEST(Limits, TenThousandLayers) {
     }
 }
 
-/// Triangles of all sizes in all places, many more than fit into the limits below.
+/// Triangles of all sizes everywhere, many more than fit into the limits below.
 LayerScene many_triangles(int count) {
   LayerScene scene;
   scene.kind = "many triangles";
@@ -83,7 +82,7 @@ LayerScene many_triangles(int count) {
   return scene;
 }
 
-// Less memory than the frame would take, and generated scenes in little.
+// Less memory than the frame needs, and generated scenes in little memory.
 TEST(Limits, LittleMemoryChangesNoPixel) {
   constexpr int kSize = 160;
   constexpr std::uint64_t kLimit = 5 * kMebi;
@@ -92,7 +91,7 @@ TEST(Limits, LittleMemoryChangesNoPixel) {
   for (const char* const rasterizer : {"grouped", "tiled"})
     for (const int threads : {2, 8})
       limited.emplace_back(options(kSize, kLimit, threads, rasterizer));
-  // By those of `limited` from `first` on, `step` apart.
+  // Draws with every `step`-th of `limited`, from `first` on.
   const auto expect_same = [&](const LayerScene& scene, std::uint64_t least, std::size_t first,
                                std::size_t step) {
     SCOPED_TRACE(scene.kind);
@@ -105,7 +104,7 @@ TEST(Limits, LittleMemoryChangesNoPixel) {
       if (picture) {
         ASSERT_TRUE(same_bits(*picture, expected)) << renderer.options().rasterizer;
       } else {
-        ASSERT_NE(renderer.options().rasterizer, "grouped");  // which draws part by part
+        ASSERT_NE(renderer.options().rasterizer, "grouped");  // grouped draws part by part
       }
     }
   };
@@ -117,7 +116,7 @@ TEST(Limits, LittleMemoryChangesNoPixel) {
   expect_same(layer_stack(13, 1000, 0.004, kSize, kSize), kLimit, 0, 1);
 }
 
-// 2.6 · 10⁹ fragments in half a GiB. All layers are level, so that one pixel's blend is everyone's.
+// 2.6 · 10⁹ fragments in half a GiB. All layers are level, so one pixel's blend is every pixel's.
 TEST(Limits, TenThousandLayersAt512) {
   if (!is_full()) GTEST_SKIP() << kOnlyFull;
   constexpr int kSize = 512, kLayers = 10000;
@@ -132,14 +131,14 @@ TEST(Limits, TenThousandLayersAt512) {
   Painter renderer(options(kSize, kLimit, 2, "auto"));
   const LayerPicture picture = take(renderer, program);
   EXPECT_LE(picture.stats.peak_bytes, kLimit);
-  // The bound on colours would let a few layers of so many vanish.
+  // The bound on colours alone would allow a few missing layers.
   EXPECT_EQ(picture.counter("translucent fragments"), std::uint64_t{kLayers} * kSize * kSize);
   LayerImage everywhere;
   everywhere.width = everywhere.height = kSize;
   everywhere.color.assign(std::size_t{kSize} * kSize, oracle.color[0]);
   everywhere.depth.assign(std::size_t{kSize} * kSize, oracle.depth[0]);
   everywhere.layers.assign(std::size_t{kSize} * kSize, oracle.layers[0]);
-  // Either half of a quad may cover a pixel, and both have its colour.
+  // Either half of a quad may cover a pixel; both have its colour.
   everywhere.ids.assign(picture.ids.pixels().begin(), picture.ids.pixels().end());
   for (const std::int64_t id : everywhere.ids) ASSERT_EQ(id / 2, oracle.ids[0] / 2);
   EXPECT_TRUE(equals_oracle(picture, everywhere));

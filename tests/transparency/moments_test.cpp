@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Moment-based transparency: every instruction set, rows and layers have the same bits, and they
-// are what the paper's formulas give in float64, but for what float32 rounds.
+// Moment-based transparency: instruction sets, rows and layers have the same bits, which equal the
+// paper's formulas in float64 up to float32's rounding.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,8 +38,8 @@ struct Fragments {
   }
 };
 
-/// Up to `most` layers a pixel, of depths from a half down to a half less `spread`; with a `gap` in
-/// two bunches, each of so much of that.
+/// Up to `most` layers a pixel, at depths from 0.5 down by `spread`. With a `gap` they are in two
+/// bunches, each this part of the range.
 Fragments random_fragments(std::uint64_t seed, int most, double spread, double gap = 0) {
   Random random(seed);
   Fragments all;
@@ -75,7 +75,7 @@ BlockColors by_layers(const Fragments& all, const TransparencyOptions& method, I
       BlockColors colors;
       std::uint64_t mask = 0;
       for (std::size_t i = 0; i < 64; ++i) {
-        // Where there is none the layer has anything.
+        // A pixel without a fragment has any values.
         constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
         colors.set(static_cast<int>(i), {kNan, kNan, kNan, i % 2 == 0 ? kNan : 0.7F});
         keys[i] = ~std::uint64_t{0} >> i % 7;
@@ -118,7 +118,7 @@ BlockColors by_rows(const Fragments& all, const TransparencyOptions& method, Isa
   return out;
 }
 
-/// Red of a pixel blended in order.
+/// Red of a pixel, blended in order.
 double exact(std::vector<Fragment> pixel, float behind) {
   std::ranges::stable_sort(pixel, std::ranges::greater(), &Fragment::depth);
   double red = 0, through = 1;
@@ -184,7 +184,7 @@ void solve(const std::array<double, 4>& c, std::array<double, 3>& roots) {
 }
 
 /// Cholesky's H = L Lᵀ of the Hankel matrix, H c = (1, z, …), the roots of c, and Newton's
-/// interpolation of the step at z through them and (z, a quarter).
+/// interpolation through them of the step at z with value a quarter.
 template <std::size_t n>
 double absorbance_before(const std::array<double, 2 * n + 1>& b, double z) {
   std::array<std::array<double, n + 1>, n + 1> l{};
@@ -272,13 +272,13 @@ std::array<std::array<double, 2>, 64> in_float64(const Fragments& all) {
   return out;
 }
 
-// Bunches in a small part of a block's range are what float32's moments cannot tell apart; there
-// the method itself is off by some hundredths, and float32 must not add a decibel.
+// float32's moments cannot separate bunches in a small part of a block's range. There the method
+// itself is off by some hundredths, and float32 must not add a decibel.
 TEST(Moments, AreThePapersInFloat64) {
   struct Case {
     int layers;
     double spread, gap;
-    double off[2];  ///< root mean square from float64, at most, of 4 and 6 moments
+    double off[2];  ///< greatest root mean square difference from float64, of 4 and 6 moments
   };
   for (const Case& c : {Case{2, 0.4, 0, {4e-5, 4e-5}}, Case{3, 0.4, 0, {1e-4, 1e-4}},
                         Case{6, 0.4, 0, {2e-4, 2e-4}}, Case{20, 0.4, 0, {1e-4, 1e-4}},

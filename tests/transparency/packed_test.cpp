@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The kernels of packed fragments, on every instruction set, against their definitions.
+// The kernels of packed fragments on every instruction set, against their definitions.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -79,8 +79,8 @@ TEST_P(Packed, HasTheKeysOfTheBlocks) {
   }
 }
 
-/// Ids of windows and of micro triangles, in runs of any length: all come out by their ids, and
-/// those of one id one behind the other.
+/// Ids of windows and of micro triangles, in runs of any length, are merged in the order of ids.
+/// Fragments of one id stay together.
 TEST_P(Packed, PutsMicroTrianglesBetweenTheWindows) {
   Random random(6);
   for (int i = 0; i < 300; ++i) {
@@ -168,7 +168,7 @@ TEST_P(Packed, FindsWhereIdsBegin) {
     for (std::size_t f = 0; f < count; ++f)
       EXPECT_EQ((firsts[f / 64] >> f % 64 & 1) != 0, expected[f]) << count << " " << f;
     if (count < 2) continue;
-    // An id that falls, wherever it is.
+    // An id below its predecessor, anywhere.
     keys[static_cast<std::size_t>(random.integer(1, static_cast<int>(count) - 1))] |=
         raster::kIdMask;
     EXPECT_FALSE(kernels_.find_firsts(keys.data(), count, firsts.data()));
@@ -181,7 +181,7 @@ TEST_P(Packed, CountsWhatPixelsHave) {
     std::vector<std::uint16_t> pixels;
     std::vector<int> expected(rows * 8);
     for (int n = random.integer(0, 20000); n > 0; --n) {
-      // Each row has many in one pixel.
+      // Each row has many fragments in one pixel.
       const int row = random.integer(0, static_cast<int>(rows) - 1);
       const int pixel = row * 8 + (n % 2 == 0 ? random.integer(0, 7) : row * 5 % 8);
       pixels.push_back(static_cast<std::uint16_t>(pixel));
@@ -212,7 +212,7 @@ TEST_P(Packed, PointsLieAtTheirPixels) {
   }
 }
 
-/// Rows of 8 sort_keys: pixel i has `counts[i]`, then zeros.
+/// Rows of 8 sort_keys: pixel i has `counts[i]` keys, then zeros.
 std::vector<std::uint64_t> row_of(Random& random, std::size_t layers, std::size_t& numbers) {
   std::vector<std::uint64_t> sort_keys(layers * 8, 0);
   numbers = 0;
@@ -229,7 +229,7 @@ std::vector<std::uint64_t> row_of(Random& random, std::size_t layers, std::size_
   return sort_keys;
 }
 
-/// As the definition has it, a list a pixel.
+/// Compares with the definition, a list per pixel.
 TEST_P(Packed, FiltersAsInsertionDoes) {
   Random random(11);
   std::uint64_t all_misplaced = 0;
@@ -276,7 +276,7 @@ TEST_P(Packed, SortsEveryPixel) {
   }
 }
 
-/// A row's layers by the kernels of planes, which blend_test holds to Porter and Duff.
+/// A row's layers against the kernels of planes, which blend_test compares with Porter and Duff.
 TEST_P(Packed, BlendsAsPlanesDo) {
   Random random(4);
   const transparency::BlendKernels& planes = transparency::blend_kernels(Isa::scalar);
@@ -335,7 +335,7 @@ TEST_P(Packed, BlendsAsPlanesDo) {
   }
 }
 
-/// A block's rows and what lies behind, by the kernels of planes.
+/// A block's rows over a background against the kernels of planes.
 TEST_P(Packed, PutsABlockOverWhatIsBehindIt) {
   Random random(8);
   const transparency::BlendKernels& planes = transparency::blend_kernels(Isa::scalar);

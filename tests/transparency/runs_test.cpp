@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fragments that are shaded by runs of their triangles (shade_runs) have the bits that
-// blocks of pixels give: the scalar path, which has no runs, against every instruction set.
+// Fragments shaded by runs of their triangles (shade_runs) have the bits of blocks of pixels: every
+// instruction set against the scalar path, which has no runs.
 #include <cstdint>
 #include <string>
 
@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kWidth = 96, kHeight = 80;
 
-/// One triangle; a thin one has weights of float64.
+/// One triangle; a thin one needs float64 weights.
 Mesh triangle(Random& random, bool thin) {
   Mesh m;
   const auto at = [&] { return static_cast<float>(random.real(-1, 1)); };
@@ -31,8 +31,8 @@ Mesh triangle(Random& random, bool thin) {
   return m;
 }
 
-/// Some fifty small meshes, of which a vector of triangles holds several: with normals a vertex,
-/// others by index, faces', and some with colours; large and small on the screen, in each other.
+/// About fifty small meshes, several of which share a vector of triangles: with normals by vertex,
+/// by index and by face, some with colours; large and small on the screen, crossing each other.
 Scene small_meshes(std::uint64_t seed, bool colored) {
   Random random(seed);
   Scene scene;
@@ -85,7 +85,7 @@ TEST_P(Runs, HaveTheBitsOfBlocks) {
   o.isa = Isa::scalar;
   Painter blocks(o);
   Camera camera;
-  camera.eye = {0.3, 0.4, 2.2};  // in some of them
+  camera.eye = {0.3, 0.4, 2.2};  // inside some of them
   camera.target = {0, 0, 0};
   camera.near_plane = 0.05F;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Several samples a pixel: each equals a sort of its own fragments, a triangle has one colour in a
-// pixel, and the pixel is the mean. For translucent, opaque and mixed surfaces.
+// Several samples a pixel: each sample equals a sort of its own fragments, a triangle has one
+// colour in a pixel, and the pixel is the mean. For translucent, opaque and mixed surfaces.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -93,7 +93,7 @@ class Samples : public testing::TestWithParam<int> {
         if (!good && ++failures == 3) FAIL() << "three scenes failed; the rest was not drawn";
       }
     }
-    // Edges are smooth: over half of a background some pixels are covered in part.
+    // Edges are smooth: some pixels are partly covered, over a half-transparent background.
     EXPECT_GT(partly, 1000U);
   }
 };
@@ -109,7 +109,7 @@ TEST_P(Samples, OpaqueSurfacesEqualTheOracle) {
 INSTANTIATE_TEST_SUITE_P(Standard, Samples, testing::Values(4, 8, 16),
                          [](const auto& p) { return std::to_string(p.param); });
 
-// The serial device, which is written for plainness, draws the same; also without sorting.
+// The serial device, which is deliberately plain, draws the same; also without sorting.
 class Serial : public Samples {};
 
 TEST_P(Serial, EqualsTheOracleAndThreads) {
@@ -139,7 +139,7 @@ TEST_P(Serial, EqualsTheOracleAndThreads) {
   }
 }
 
-// Pieces of one clipped triangle that overlap are one layer.
+// Overlapping pieces of a clipped triangle are one layer.
 TEST_P(Serial, OverlappingPiecesAreOneLayerEverywhere) {
   const Size size{64, 64};
   const LayerScene scene = overlapping_pieces();
@@ -165,18 +165,18 @@ TEST_P(Serial, OverlappingPiecesAreOneLayerEverywhere) {
 INSTANTIATE_TEST_SUITE_P(Standard, Serial, testing::Values(1, 4, 8, 16),
                          [](const auto& p) { return std::to_string(p.param); });
 
-/// The other targets (frame.hpp) have the values of the sample with the largest key. A frame with
-/// one sample, of the scene moved so that this sample lies at the pixels' centres, has its key.
+/// The other targets (frame.hpp) have the values of the sample with the largest key: that of a
+/// frame with one sample, whose scene is moved so that this sample is at the pixels' centres.
 TEST_P(Samples, TheOtherTargetsAreOfTheNearestSample) {
   constexpr int kSide = 64;
   const Camera camera = pixel_camera(kSide, kSide);
   const Mat4 to_clip(world_to_clip(camera, kSide, kSide));
-  // Two tilted triangles that pass through each other, and slivers between the pixels' centres.
+  // Two tilted triangles through each other, and slivers between the pixels' centres.
   std::vector<Vec3> corners{
       at_pixel(3, 5, 0.2, kSide, kSide),   at_pixel(60, 9, 0.9, kSide, kSide),
       at_pixel(20, 61, 0.5, kSide, kSide), at_pixel(5, 50, 0.9, kSide, kSide),
       at_pixel(62, 55, 0.3, kSide, kSide), at_pixel(30, 2, 0.4, kSide, kSide)};
-  // On the raster of snapping, so that nothing but the sample moves them.
+  // On the snapping grid, so that only the sample moves them.
   for (int i = 0; i < 5; ++i)
     for (const Vec2 p : {Vec2{40.5625F, 8}, {40.9375F, 8}, {40.75F, 60}})
       corners.push_back(at_pixel(double{p.x} + 5 * i, double{p.y}, 0.95, kSide, kSide));
@@ -246,8 +246,8 @@ TEST_P(Samples, TheOtherTargetsAreOfTheNearestSample) {
           ASSERT_EQ(extra.w, 0);
           continue;
         }
-        // Values are the pixel centre's; a surface that does not reach the centre has none beyond
-        // its corners.
+        // Values are the pixel centre's. A surface that misses the centre has values within its
+        // corners.
         const bool at_centre = at_centres.ids(x, y) == got.ids(x, y);
         const std::size_t corner = static_cast<std::size_t>(got.ids(x, y)) * 3;
         const auto [low, high] =
@@ -259,7 +259,7 @@ TEST_P(Samples, TheOtherTargetsAreOfTheNearestSample) {
         ASSERT_EQ(extra.z, static_cast<float>(got.ids(x, y)));
         beyond += !at_centre;
       }
-    EXPECT_GT(beyond, 50);  // pixels where another surface, or none, is at the centre
+    EXPECT_GT(beyond, 50);  // pixels with another surface, or none, at the centre
   }
 }
 

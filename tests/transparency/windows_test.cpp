@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Coverage by windows (raster/cover/windows.hpp) covers what coverage by blocks does, on every
-// instruction set.
+// Coverage by windows (raster/cover/windows.hpp) equals coverage by blocks, on every instruction
+// set.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ using raster::kSubpixels;
 using raster::Piece;
 using raster::Rect;
 
-/// A triangle somewhere around `bin`, mostly of less than 8 px.
+/// A triangle around `bin`, mostly smaller than 8 px.
 Piece triangle(Random& random, Rect bin) {
   Piece p{};
   const int size = (random.integer(0, 5) == 0 ? 40 : 8) * kSubpixels;
@@ -49,7 +49,7 @@ Piece triangle(Random& random, Rect bin) {
 
 using Sample = std::tuple<std::uint32_t, int, int>;  // piece, place in the bin
 
-/// All that a kernel covers; `unit`: of a block's place, px.
+/// All samples that a kernel covers; `unit`: the unit of a block's place, px.
 template <class Cover>
 std::vector<Sample> covered(const Cover& cover, const std::vector<Piece>& pieces, Rect bin,
                             int unit, Rect origin, std::vector<Block>* all = nullptr) {
@@ -80,7 +80,7 @@ TEST_P(Windows, CoverWhatBlocksDo) {
   Random random(1);
   std::size_t unaligned = 0;
   for (int round = 0; round < 300; ++round) {
-    // Bins, parts of them, and what the edge of the picture leaves.
+    // Bins, parts of bins, and bins at the picture's edge.
     const int side = 64 >> random.integer(0, 3);
     Rect bin{640, 128, 640 + side, 128 + side};
     if (round % 3 == 0) bin.x1 -= random.integer(0, 7);

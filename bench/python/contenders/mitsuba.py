@@ -26,7 +26,7 @@ def prepare(scene):
         return {"color": np.array(mi.render(world, spp=1))}
 
     def images():
-        # Where one ray at a random place of each pixel ends.
+        # The hit of one ray at a random place in each pixel.
         aov = np.array(mi.render(made({"type": "aov", "aovs": "p:position"}), spp=1))
         ahead = (scene.target - scene.eye) / np.linalg.norm(scene.target - scene.eye)
         place = aov[..., -3:].astype(np.float64)

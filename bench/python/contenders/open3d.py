@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Open3D by Embree's rays: ids and distances; without a picture, which wants OpenGL. The tree is built once and not timed."""
+"""Open3D by Embree's rays: ids and distances, no picture, which needs OpenGL. The tree is built once, untimed."""
 import numpy as np
 import open3d as o3d
 
@@ -9,7 +9,7 @@ REQUIREMENTS = ["open3d==0.20.0", "numpy"]
 def prepare(scene):
     made = o3d.t.geometry.RaycastingScene()
     made.add_triangles(o3d.core.Tensor(scene.vertices.astype(np.float32)), o3d.core.Tensor(scene.faces.astype(np.uint32)))
-    # A ray goes one unit along the axis, so that its parameter is the depth.
+    # Rays go one unit along the axis, so that their parameter is the depth.
     n, t = scene.size, np.tan(np.radians(scene.fov) / 2)
     x = t * ((np.arange(n) + 0.5) / n * 2 - 1)
     rays = np.empty((n, n, 6), np.float32)

@@ -8,7 +8,7 @@ import numpy as np  # noqa: E402
 import pyrender  # noqa: E402
 import trimesh  # noqa: E402
 
-# pyrender's own requirements do not run: the PyOpenGL it names does not know today's OSMesa, and it uses names that
+# pyrender's own requirements do not work: its PyOpenGL does not know current OSMesa, and it uses names that
 # NumPy 2 has dropped.
 REQUIREMENTS = ["numpy<2", "trimesh<5", "pyglet<2", "PyOpenGL==3.1.10", "freetype-py", "imageio", "networkx", "pillow", "scipy", "six"]
 WITHOUT_DEPENDENCIES = ["pyrender==0.1.45"]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The same with normals, in one frame."""
+"""The rastrum contender with normals, in one frame."""
 from contenders import rastrum
 
 REQUIREMENTS = rastrum.REQUIREMENTS

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """trimesh with Embree's rays (embreex): the triangle of each pixel. The tree is built in the first picture."""
-import embreex  # noqa: F401  trimesh takes it where it is
+import embreex  # noqa: F401  trimesh uses it if it is installed
 import numpy as np
 import trimesh
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The papers' rasterizers (library Rastrum::family): named ways to find what triangles cover, named
 // ways to resolve the fragments of a pixel, and paper 3's way to draw a terrain. All give the
-// picture of a plain Renderer, bit for bit: they are there to be compared.
+// picture of a plain Renderer, bit for bit. They exist to be compared.
 #pragma once
 
 #include <string>
@@ -23,7 +23,7 @@ struct AxisInfo {
 /// The visibilities; the first is the default.
 [[nodiscard]] const std::vector<AxisInfo>& visibility_axis();
 
-/// A point of the table: names on its two axes. On a device there is `by-size`, too, the default.
+/// A point of the table: names on its two axes. A device also has `by-size`, its default.
 struct Row {
   std::string rasterizer = "auto";
   std::string visibility = "auto";
@@ -33,27 +33,27 @@ struct Row {
   bool operator==(const Row&) const = default;
 };
 
-/// Everything that a picture depends on, the scene apart, for callers that keep it in one piece: a
-/// command line, a benchmark.
+/// Everything but the scene that a picture depends on, in one piece for a command line or a
+/// benchmark.
 struct Options : RendererOptions, FrameOptions, Row {};
 
 /// A renderer that draws by a row. Device::automatic takes a GPU for the default row alone. Throws
-/// as Renderer, and Error{invalid_argument} that lists the names or the tunings that there are. Its
+/// as Renderer does, and Error{invalid_argument}, which lists the valid names or tunings. Its
 /// frames throw Error{invalid_argument} if the row cannot draw layers.
 [[nodiscard]] Renderer make_renderer(const RendererOptions& options, const Row& row);
 
 /// Published approximations of exact transparency, for FrameOptions::transparency of any renderer.
-/// A device leaves them to the CPU.
+/// They run on the CPU.
 [[nodiscard]] TransparencyOptions wboit();   ///< weighted blended (McGuire and Bavoil 2013)
 [[nodiscard]] TransparencyOptions mboit4();  ///< four power moments (Münstermann et al. 2018)
 [[nodiscard]] TransparencyOptions mboit6();  ///< six power moments
 [[nodiscard]] TransparencyOptions mlab4();   ///< four layers (Salvi and Vaidyanathan 2014)
 /// Paper 4's method: sorted blocks and a filter of 1 to 64 fragments a pixel, without repair.
-/// Throws Error{invalid_argument} for another number.
+/// Throws Error{invalid_argument} for any other number.
 [[nodiscard]] TransparencyOptions filtered(int fragments);
 
-/// Paper 3's way to draw the same picture of a terrain, for TerrainOptions::added: the `occlude`
-/// scan, the scatter and the `fill` scan.
+/// Paper 3's way to draw the same picture of a terrain, for TerrainOptions::added: `occlude` scan,
+/// scatter, `fill` scan.
 [[nodiscard]] const terrain::AddedMethod& terrain_words();
 
 }  // namespace family

@@ -14,9 +14,9 @@ enum class BlockOrder : std::uint8_t { row_major, morton };
 /// How `hybrid` draws small triangles: by the blocks of their boxes or by rows (paper 1, 4.2).
 enum class SmallPath : std::uint8_t { blocks, rows };
 
-/// Parameters of the rasterizers; 0 takes the rasterizer's default, which is its paper's. Sizes of
-/// bins and tiles are powers of two. A bin is up to 128 px and 2 to 16 tiles across, a tile from 4
-/// px, with `binned` from 8. `grouped` takes bins of 64 px and tiles of 8 px alone.
+/// Parameters of the rasterizers; 0 is the default of the rasterizer's paper. Sizes of bins and
+/// tiles are powers of two. A bin is up to 128 px and 2 to 16 tiles across. A tile has at least 4
+/// px, with `binned` 8. `grouped` takes only bins of 64 px and tiles of 8 px.
 struct Tuning {
   int bin_px = 0, tile_px = 0;
   int small_px = 0;  ///< box area up to which a triangle is small (128)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A program for mpirun: pictures of parts by processes of MPI, beside IceT's radix-k on the same
-// ranks' pictures in the same run. Opaque surfaces: all must have one renderer's bits. Translucent
-// ones: IceT blends whole pictures in one order of ranks, so its error is shown, for parts in slabs
-// (an order is right) and for interleaved parts (none is).
+// A program for mpirun: pictures of parts by MPI processes, beside IceT's radix-k on the same
+// ranks' pictures in the same run. For opaque surfaces all must have the bits of one renderer. For
+// translucent ones IceT blends whole pictures in one order of ranks, so its error is shown: for
+// parts in slabs, where one order is right, and for interleaved parts, where none is.
 //   mpirun -n 8 rastrum-bench-icet [rounds] [triangles] [width height]
 #include <algorithm>
 #include <bit>
@@ -30,7 +30,7 @@ struct Setting {
   FrameOptions frame;
   Camera camera;
   SceneView all, own;
-  std::vector<std::uint64_t> numbers;  ///< of own parts
+  std::vector<std::uint64_t> numbers;  ///< of the parts in `own`
   std::vector<InstanceView> instances;
 };
 
@@ -54,7 +54,8 @@ class IceT {
     icetCompositeMode(blends ? ICET_COMPOSITE_MODE_BLEND : ICET_COMPOSITE_MODE_Z_BUFFER);
     if (!blends) return;
     icetEnable(ICET_ORDERED_COMPOSITE);
-    // The camera looks along falling x, against the slabs' numbers: the last rank is the nearest.
+    // The camera looks along falling x, against the slabs' numbers, so the last rank is the
+    // nearest.
     std::vector<IceTInt> order;
     for (int r = s.size; r-- > 0;) order.push_back(r);
     icetCompositeOrder(order.data());
@@ -66,13 +67,12 @@ class IceT {
     icetDestroyMPICommunicator(communicator_);
   }
 
-  /// The picture at rank 0. `composite_ms`: of IceT's call alone.
+  /// The picture at rank 0. `composite_ms` is the time of IceT's call alone.
   const float* draw(Renderer& renderer, double& composite_ms) {
     Targets targets{.color = color_};
     if (!blends_) targets.depth = depth_;
     (void)renderer.render(setting_.own, setting_.camera, setting_.frame, targets);
-    // Greater is nearer with us and smaller with IceT, which takes 1 for nothing. A change of sign
-    // is exact.
+    // Nearer is greater here and smaller in IceT, where 1 is empty. Changing the sign is exact.
     for (float& d : depth_.pixels()) d = d == 0 ? 1.0F : -d;
     icetSetContext(context_);
     const double begin = MPI_Wtime();
@@ -129,7 +129,7 @@ double median(std::vector<double> v) {
   return v.empty() ? 0 : v[v.size() / 2];
 }
 
-/// One table: all forms, by turns; a frame ends when rank 0 has its picture.
+/// One table: all forms take turns. A frame ends when rank 0 has its picture.
 bool compare(Setting& s, const char* title, bool translucent) {
   s.frame.opacity = translucent ? 0.3F : 1;
   s.own.instances = s.instances;

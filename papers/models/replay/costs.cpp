@@ -13,8 +13,8 @@ namespace {
 
 using parallel::Recording;
 
-/// A core's look into a queue of another: a line that comes from there. Assumed, since with two
-/// workers there is only one to look at.
+/// ns for a core to look into another core's queue, which moves a cache line. Assumed: two workers
+/// have only one other queue to look at.
 constexpr double kLook = 60;
 
 void spin(double ns) {
@@ -23,8 +23,7 @@ void spin(double ns) {
   }
 }
 
-/// The second least of ten samples: a thread may lose its core for a while, which is not oneTBB's
-/// doing.
+/// The 20 % quantile, because a thread may lose its core for a while, which is not oneTBB's cost.
 double usual(std::vector<double> values) {
   if (values.empty()) return 0;
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 5);
@@ -32,7 +31,6 @@ double usual(std::vector<double> values) {
   return *at;
 }
 
-/// The usual time of a loop.
 template <class Loop>
 double loop_ns(int rounds, const Loop& loop) {
   std::vector<double> ns;
@@ -49,8 +47,8 @@ struct Latency {
   bool found = false;
 };
 
-/// Two tasks, of which the second is to be taken by the other thread while the first waits for it,
-/// after the caller has been alone for `gap_ns`.
+/// Two tasks. The other thread is to take the second while the first waits for it. The caller is
+/// alone for `gap_ns` before.
 Latency latency(parallel::Threads& threads, int rounds, double gap_ns) {
   constexpr std::int64_t kPatience = 3'000'000;
   std::vector<double> take, join;
@@ -105,7 +103,7 @@ LoopCosts measure_costs(int rounds) {
   costs.claim = loop_ns(rounds, [&] { parallel::for_each_in_order(two, kTasks, count); }) / kTasks;
   const Latency near = latency(two, 4 * rounds, 10'000);
   const Latency far = latency(two, rounds, 20'000'000);
-  // More than any hand-over takes: the threads have no cores of their own at the moment.
+  // No hand-over takes longer than this, so the threads have no cores of their own now.
   if (!near.found || !far.found || near.take > 20'000 || near.join > 20'000) return costs;
   costs.take = std::max(near.take - costs.loop, 0.0);
   costs.join = near.join;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum bench replay`: frames recorded on one thread and replayed on 1 to 256 simulated workers,
-// and what keeps each stage from being faster. Times of two real threads are measured beside it.
+// `rastrum bench replay`: replays frames recorded on one thread on 1 to 256 simulated workers and
+// shows what limits each stage. Times of two real threads stand beside it.
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -23,10 +23,11 @@ namespace rastrum::bench {
 namespace {
 
 constexpr std::array kWorkers{1, 2, 4, 8, 16, 32, 64, 128, 256};
-/// Where stages are looked at, and the project's goal there: of a million triangles at 1080p.
+/// The numbers of workers at which stages are examined. The project's goal is for a million
+/// triangles at 1080p.
 constexpr std::array kLooked{16, 64};
 
-/// A stage of a frame on so many workers, ns.
+/// A stage of a frame on a number of workers, ns.
 struct Stage {
   std::string name;
   double serial = 0;               ///< between loops, on the caller's thread
@@ -51,7 +52,7 @@ struct Drawn {
   FrameOptions frame;
 };
 
-/// One frame, recorded as on one of so many threads.
+/// One frame, recorded on one thread but split as for a number of workers.
 struct Shot {
   RecordedFrame frame;
   std::vector<StageTime> stages;  ///< ms since the frame's begin
@@ -65,7 +66,7 @@ Shot shoot(Renderer& renderer, const Drawn& s, Image<Rgba8>& picture, int worker
   const FrameStats stats = renderer.render(s.scene, s.camera, s.frame, {.color8 = picture});
   shot.frame.end_ns = parallel::Recording::now_ns();
   const double all = static_cast<double>(shot.frame.end_ns - shot.frame.begin_ns) * 1e-6;
-  const double before = std::max(0.0, all - stats.frame_ms);  // of the façade
+  const double before = std::max(0.0, all - stats.frame_ms);  // in the façade
   shot.stages.push_back({"prepare", 0, before});
   for (const StageTime& stage : stats.stages)
     shot.stages.push_back({stage.name, stage.begin_ms + before, stage.end_ms + before});
@@ -79,7 +80,7 @@ std::size_t stage_at(const Shot& shot, double ms) {
   return k;
 }
 
-/// Stages of the same name are one.
+/// Merges stages of the same name.
 std::vector<Stage> stages_of(std::span<const Shot> shots, const ReplayedFrame& frame,
                              const Replay& replayed, int workers) {
   const Shot& last = shots.back();
@@ -124,7 +125,7 @@ std::vector<Stage> stages_of(std::span<const Shot> shots, const ReplayedFrame& f
   return stages;
 }
 
-/// A frame's shots are of the last `rounds` frames: the first ones make memory and find hints.
+/// Records the last `rounds` frames. The frames before allocate memory and find hints.
 Replayed replayed(Renderer& renderer, const Drawn& s, Image<Rgba8>& picture, int workers,
                   int rounds, const LoopCosts& costs) {
   std::vector<Shot> shots;
@@ -142,7 +143,7 @@ std::string whole_percent(double share) {
   std::snprintf(text, sizeof text, "%.0f", 100 * share);
   return text;
 }
-/// With its share of the workers.
+/// The speed, and its share of the workers.
 std::string speed_text(double speed, int workers) {
   return significant(speed) + " (" + whole_percent(speed / workers) + " %)";
 }
@@ -150,7 +151,7 @@ std::string microseconds(double ns) {
   return significant(ns * 1e-3);
 }
 
-/// The cause of most of a stage's loss.
+/// The main cause of a stage's loss.
 std::string binds(const Stage& s, int workers) {
   const double ideal = s.work / workers;
   const double serial = s.serial, excess = s.excess, rest = s.loops_ns - ideal - s.excess;
@@ -174,7 +175,7 @@ class ReplayTable {
                          {}});
   }
 
-  /// Whether the pictures are equal.
+  /// Returns whether the pictures are equal.
   [[nodiscard]] bool add(const Drawn& s) {
     std::fprintf(stderr, "  %s\n", s.name.c_str());
     Image<Rgba8> a(s.frame.width, s.frame.height), b(s.frame.width, s.frame.height);

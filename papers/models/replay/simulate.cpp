@@ -14,12 +14,12 @@
 namespace rastrum::bench {
 namespace {
 
-/// The workers of one loop, event by event.
+/// Simulates the workers of one loop, event by event.
 class Workers {
  public:
   Workers(const ReplayedLoop& loop, int count, const LoopCosts& costs)
       : loop_(loop), costs_(costs), queues_(static_cast<std::size_t>(count)) {
-    // In order each worker has a share, which ends when no index is left.
+    // A loop in order has one share for each worker, which ends when no index is left.
     n_ = loop.in_order ? std::min(loop.n, queues_.size()) : loop.n;
     grain_ = loop.in_order ? 1 : std::max<std::size_t>(loop.grain, 1);
   }
@@ -47,12 +47,12 @@ class Workers {
  private:
   struct Range {
     std::size_t begin, end;
-    double up;  ///< when it was put up
+    double up;  ///< when it was queued
   };
   enum class Next : std::uint8_t { look, claim };
   struct Event {
     double at;
-    std::uint64_t number;  ///< equal times in the order in which they were added
+    std::uint64_t number;  ///< orders events of equal time
     std::size_t worker;
     Next next;
     bool operator>(const Event& e) const { return std::tie(at, number) > std::tie(e.at, e.number); }
@@ -62,7 +62,7 @@ class Workers {
     events_.push({at, events_added_++, worker, next});
   }
 
-  /// Splits what the worker has, and does the first of it.
+  /// Splits the worker's range and runs its first part.
   void run_range(std::size_t w, Range r, double t) {
     while (r.end - r.begin > grain_) {
       t += costs_.task;

@@ -13,15 +13,15 @@
 namespace rastrum::bench {
 namespace {
 
-/// Pictures in float32, and VTK's of 8 bits, blended layer by layer.
+/// For pictures in float32, and for VTK's of 8 bits, which are blended layer by layer.
 constexpr double kTolerance = 1.0 / 255, kTolerance8 = 4.0 / 255;
-/// The share of covered pixels within the tolerance: normals turn over at silhouettes, vertices
-/// round differently, and depths that nearly tie come in another order.
+/// The least share of covered pixels within the tolerance. Others differ: normals turn over at
+/// silhouettes, vertices round differently, and near ties in depth change the order.
 constexpr double kLeastShare = 0.99;
-/// A frame that takes longer is timed once and takes no turns.
+/// A frame that takes longer is timed once only.
 constexpr double kLong_ms = 5000;
 
-/// Runs f; what it cannot do is the lap's `not_run`.
+/// Runs f. An error's text becomes the lap's `not_run`.
 template <class F>
 void try_lap(Lap& lap, F&& f) {
   try {
@@ -36,7 +36,7 @@ void try_lap(Lap& lap, F&& f) {
 /// Laps that take turns.
 class Race {
  public:
-  /// `frame` is run once now. The lap must outlive `run`.
+  /// Runs `frame` once now. The lap must outlive `run`.
   void enter(Lap& lap, std::function<void()> frame) {
     try_lap(lap, [&] {
       const double ms = timed_ms(frame);
@@ -90,14 +90,14 @@ class View {
     return ours.renderer.render({.instances = {&instance, 1}}, camera_, ours.frame, targets);
   }
 
-  /// A lap of ours: its float picture and the pixels that are wrong.
+  /// Draws a lap of ours: fills its float picture and counts the wrong pixels.
   std::unique_ptr<Ours> check(Lap& lap, const family::Options& o, Image<Vec4>& picture) const {
     std::unique_ptr<Ours> ours;
     try_lap(lap, [&] {
       ours = std::make_unique<Ours>(Ours{family::make_renderer(o, o), o});
       Image<std::uint8_t> errors(size_.width, size_.height);
       lap.stats = draw(*ours, {.color = picture, .errors = errors});
-      // An option that a build does not know yet would be measured under a false name.
+      // Otherwise a build that ignores an option would be measured under a false name.
       if (lap.stats.fragments != 0 && counter(lap.stats, "translucent fragments") == 0)
         throw Error(Errc::unsupported, "absent: nothing was translucent");
       lap.wrong_pixels = static_cast<std::uint64_t>(
@@ -184,8 +184,8 @@ void measure_peers(Race& race, TransparencyRow& row, const View& view,
   if (vtk.not_run.empty()) race.enter(vtk, [&] { peers.vtk->draw(plan.opacity); });
 }
 
-/// Counts the frame's work. `tiled` does so, which records every piece in every block that it
-/// touches; `grouped` makes fragments of micro triangles without a block.
+/// Counts the frame's work with `tiled`, which records every piece in every block that it touches.
+/// `grouped` makes fragments of micro triangles without a block.
 void count_work(TransparencyRow& row, const Mesh& mesh, const View& view,
                 const TransparencyPlan& plan) {
   Lap counted;
@@ -208,7 +208,7 @@ void count_work(TransparencyRow& row, const Mesh& mesh, const View& view,
   row.opaque_bytes = view.draw(opaque, {.color = unused}).peak_bytes;
 }
 
-/// The device's pictures against the threads' of the same technique, pixel by pixel.
+/// Compares the device's pictures with the threads' of the same technique, pixel by pixel.
 void measure_device(Race& race, TransparencyRow& row, View& view,
                     const std::vector<Image<Vec4>>& pictures, const TransparencyPlan& plan,
                     std::vector<std::unique_ptr<Ours>>& renderers) {

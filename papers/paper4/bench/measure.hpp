@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A scene drawn by every way of transparency, ours and the peers': each picture is compared with
-// the one that it should equal before anything is timed, then all take turns.
+// Draws a scene by every way of transparency, ours and the peers'. Each picture is compared with
+// its reference before the timing; then all take turns.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@
 
 namespace rastrum::bench {
 
-/// Our ways; the first is exact, which the others are compared with.
+/// Our ways. All are compared with the first, which is exact.
 struct Technique {
   std::string_view name;
   TransparencyOptions options;
@@ -36,7 +36,7 @@ inline const std::array<Technique, 9> kTechniques{{{"exact", {Transparency::exac
                                                    {"mboit6", family::mboit6()},
                                                    {"mlab4", family::mlab4()}}};
 inline constexpr std::size_t kExact = 0, kUnsorted = 1, kFilter3 = 2;
-/// Techniques that a CUDA device has, as indices of kTechniques.
+/// The techniques of a CUDA device, as indices of kTechniques.
 inline constexpr std::array kOnDevice{kExact, kUnsorted};
 
 /// The peers, in the order of TransparencyRow::peers.
@@ -47,22 +47,22 @@ inline constexpr std::array<std::string_view, kPeerCount> kPeerNames{
 /// Opacities at which alpha thresholds are measured.
 inline constexpr std::array<float, 2> kThresholdOpacities{0.5F, 0.9F};
 
-/// How one contender fared.
+/// One contender's result.
 struct Lap {
   std::string name;
-  std::string not_run;             ///< why; empty: it ran
-  bool wrong = false;              ///< its picture is not what it should be: `not_run` says so
-  bool at_least = false;           ///< it did not come to its end: `timing` is a lower bound
+  std::string not_run;             ///< the reason; empty if it ran
+  bool wrong = false;              ///< its picture is wrong: `not_run` says how
+  bool at_least = false;           ///< it was stopped early: `timing` is a lower bound
   int passes = 1;                  ///< over the geometry
-  PictureError error;              ///< from exact, and of unsorted peers from our unsorted
-  std::uint64_t wrong_pixels = 0;  ///< of the filters: blended in another order
-  FrameStats stats;                ///< of ours
+  PictureError error;              ///< from exact; for unsorted peers, from our unsorted
+  std::uint64_t wrong_pixels = 0;  ///< for filters: pixels blended in another order
+  FrameStats stats;                ///< for our ways
   Timing timing;
 
   [[nodiscard]] bool ran() const { return not_run.empty() && !timing.samples_ms.empty(); }
 };
 
-/// `a`'s time over `b`'s, the median over rounds; 0 where one did not run.
+/// `a`'s time over `b`'s, the median over rounds; 0 if one did not run.
 [[nodiscard]] double ratio(const Lap& a, const Lap& b);
 
 struct TransparencyRow {
@@ -70,13 +70,13 @@ struct TransparencyRow {
   Size size;
   Workload work;
   Floor floor;                     ///< of exact
-  std::uint64_t deepest = 0;       ///< fragments of the pixel that has most
+  std::uint64_t deepest = 0;       ///< the most fragments of a pixel
   std::uint64_t opaque_bytes = 0;  ///< scratch of the same frame with opaque surfaces
-  double samples_per_block = 0;    ///< fragments over pieces, in blocks of 8 × 8 that they touch
+  double samples_per_block = 0;    ///< fragments over (piece, 8 × 8 block) pairs
   std::vector<Lap> ours;           ///< kTechniques
   std::vector<Lap> peers;          ///< kPeerNames
-  std::vector<Lap> thresholds;     ///< for each opacity: exact without, exact with the threshold
-  std::vector<Lap> device;         ///< kOnDevice on CUDA, or none
+  std::vector<Lap> thresholds;     ///< for each opacity: exact without and with the threshold
+  std::vector<Lap> device;         ///< kOnDevice on CUDA, or empty
   double device_floor_ms = 0;      ///< of exact there, bytes alone
 
   [[nodiscard]] bool right() const;
@@ -93,14 +93,14 @@ struct TransparencyPlan {
   Plan plan;
   int threads = 2;
   float opacity = 0.5F;
-  /// Peeling is stopped after this, and then VTK's is not begun.
+  /// Peeling is stopped after this. VTK's then does not start.
   double patience_ms = 20000;
   MachineLimits machine;
   bool on_cuda = false;  ///< the device's techniques take turns with the threads'
   MachineLimits device = {};
 };
 
-/// The mesh has vertex normals that share its indices; the peers have it already.
+/// The mesh has vertex normals that share its indices. The peers have loaded it.
 [[nodiscard]] TransparencyRow measure_transparency(const Mesh& mesh, Size size,
                                                    TransparencyPeers& peers,
                                                    const TransparencyPlan& plan);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum bench transparency-pictures`: the pictures of docs/transparency_methods.md, one scene by
-// every technique with its difference to exact, and a part of it with 1 and with 8 samples a pixel.
+// `rastrum bench transparency-pictures`: the pictures of docs/transparency_methods.md. They show
+// one scene by every technique with its difference to exact, and an enlarged part with 1 and 8
+// samples a pixel.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,12 +24,12 @@
 namespace rastrum::bench {
 namespace {
 
-/// Tubes that run through each other and through themselves: up to 16 layers, and no order of
-/// triangles or of objects that would be right.
+/// Tubes that run through each other and through themselves: up to 16 layers, which no order of
+/// triangles or objects gets right.
 constexpr std::array kKnots{"torus_knot?p=2&q=3&segments=400&sides=32&tube=0.3",
                             "torus_knot?p=3&q=7&segments=600&sides=24&tube=0.14",
                             "torus_knot?p=2&q=5&segments=400&sides=32&tube=0.22"};
-/// The part that shows samples: how often it is smaller than the picture, and where it lies.
+/// The enlarged part: its factor and its place.
 constexpr int kEnlarged = 8;
 constexpr Vec3 kEdges{0.52F, 0, -0.35F};
 constexpr float kRadians = 0.0174532925F;
@@ -73,7 +74,7 @@ Camera from_above(Vec3 target, float fov_degrees) {
   return camera;
 }
 
-/// `f` maps each pixel's colour; a pixel of the picture becomes a square of `scale`.
+/// Writes the picture with `f` applied to each colour and each pixel enlarged to `scale` px.
 template <class F>
 void write(const std::filesystem::path& file, const Image<Vec4>& picture, int scale, F&& f) {
   Image<Rgba8> out(picture.width() * scale, picture.height() * scale);

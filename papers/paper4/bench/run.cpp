@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `rastrum bench transparency`: exact blending against our own unsorted blending, the
-// approximations, paper 4's filters, llvmpipe's three ways and VTK's peeling.
+// `rastrum bench transparency`: exact blending beside our unsorted blending, the approximations,
+// paper 4's filters, llvmpipe's three ways and VTK's peeling.
 
 #include <bench/cuda/rates.hpp>
 #include <bench/machine.hpp>

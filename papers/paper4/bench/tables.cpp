@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Must show 3, 4, 5 and 7 of the issue on transparency, and what paper 4 publishes beside them.
+// The tables of `rastrum bench transparency`, with the figures that paper 4 publishes.
 #include <papers/paper4/bench/tables.hpp>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace rastrum::bench {
 namespace {
 
-/// Goals: how many times faster than a peer our way has to be.
+/// A goal: how many times faster than a peer our way has to be.
 struct Goal {
   Peer peer;
   std::size_t technique;
@@ -47,7 +47,7 @@ std::string percent(double share) {
   return share <= 0 ? "0" : significant(100 * share, 2);
 }
 
-/// The mean and the largest of what is above 0, as text.
+/// The mean and the largest of the values above 0, as text.
 struct Summary {
   double sum = 0, worst = 0;
   int count = 0;
@@ -61,7 +61,7 @@ struct Summary {
   [[nodiscard]] double mean() const { return count > 0 ? sum / count : 0; }
 };
 
-/// Rows of scenes that could not be had.
+/// Adds rows for scenes whose files are missing.
 void add_absent(Grid& grid, std::span<const std::string> absent) {
   for (const std::string& scene : absent) grid.rows.push_back({scene, "not run: no file"});
 }

@@ -11,10 +11,10 @@
 
 namespace rastrum::bench {
 
-/// From so many triangles on the peers' goals count; the bunny has 69,451.
+/// The peers' goals count from this many triangles on; the bunny has 69,451.
 inline constexpr std::uint64_t kGoalTriangles = 69'000;
 
-/// The goals of the project that a row misses, in words; empty: none.
+/// The project's goals that a row misses, in words; empty if none.
 [[nodiscard]] std::string missed_goals(const TransparencyRow& row);
 
 /// Appends the tables, the plot and the figures. `absent`: scenes without a file.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// More threads than bins that hold something: a bin is cut, and its parts are drawn at the same
-// time (raster/bin/bin_parts.hpp). The pictures are one thread's.
+// With more threads than occupied bins, a bin is split and its parts are drawn at once
+// (raster/bin/bin_parts.hpp). The pictures equal one thread's.
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 constexpr int kWidth = 200, kHeight = 136;
 
 TEST(BinParts, DrawPartsOfABinAsOneThreadDoes) {
-  // Most of it in the bins in the middle, which have enough fragments to be cut (kLeastCut).
+  // Most of it is in the central bins, which have enough fragments to be split (kLeastCut).
   const Scene scene = single(shapes::soup(200'000, 0.01F, 0.02F));
   const Camera camera = fit_camera(SceneBinding(scene).view(), 1.0472F, false);
   for (const bool prepared : {false, true}) {
@@ -34,8 +34,8 @@ TEST(BinParts, DrawPartsOfABinAsOneThreadDoes) {
         for (const int threads : {1, 12}) {
           Frame& f = frames[threads == 1 ? 0 : 1];
           f = Frame(kWidth, kHeight, kinds);
-          // The images begin with different values, so that pixels that nobody draws stay
-          // different, were it in a part without a triangle.
+          // The images begin with different values, so undrawn pixels stay different, also in a
+          // part without triangles.
           if (threads == 12) std::ranges::fill(f.color8.pixels(), Rgba8{1, 1, 1, 1});
           if (threads == 12) std::ranges::fill(f.ids.pixels(), 1);
           if (threads == 12) std::ranges::fill(f.depth.pixels(), 1.0F);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Spheres, cones and tubes that bins make when they see them (raster/bin/bin_quadrics.hpp):
-// thousands of them, hidden and seen, small and large, beside what must be made before and beside
-// triangles. surfaces_test.cpp has a few at a time, and the oracle.
+// Spheres, cones and tubes that bins set up on first sight (raster/bin/bin_quadrics.hpp):
+// thousands, hidden and visible, small and large, beside primitives that are set up before and
+// beside triangles. surfaces_test.cpp has a few at a time, and the oracle.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ Camera camera_at_origin(bool orthographic) {
   return camera;
 }
 
-/// A scene with some of everything: spheres, tubes, cones and triangles, from small to large.
+/// A scene of spheres, tubes, cones and triangles of all sizes.
 class Crowd {
  public:
   explicit Crowd(std::uint64_t seed) : random_(seed) {
@@ -63,7 +63,7 @@ class Crowd {
     const float z = real(-6, -0.9);
     return {real(-1.6, 1.6) * -z, real(-1.2, 1.2) * -z, z};
   }
-  /// Squeezed, so that spheres become ellipsoids, but for 0.
+  /// Scaled unevenly, so that spheres become ellipsoids, except for 0.
   static Mat4d turned(double by) {
     Mat4d m = Mat4d::identity();
     m.m[0][1] = by;
@@ -89,7 +89,7 @@ class Crowd {
     for (int i = 0; i < 5; ++i) {
       line_positions_.push_back(p);
       line_colors_.push_back(color());
-      // Points, round ends, and balls that hold their neighbours.
+      // Points, round ends, and balls that contain their neighbours.
       line_radii_.push_back(random_.chance(0.1) ? 0 : random_.chance(0.1) ? 6 * radius : radius);
       p = p + Vec3{real(-0.3, 0.3), real(-0.3, 0.3), real(-0.3, 0.3)};
     }
@@ -111,11 +111,11 @@ class Crowd {
   KeptInstances instances_;
 };
 
-/// Without overdraw: who counts that sees all, and nothing is deferred.
+/// Without overdraw, which would count hidden fragments too and so defer nothing.
 constexpr unsigned kKinds = kColor | kDepth | kIds;
 
 TEST(BinQuadrics, AreTheSameBitsEverywhere) {
-  // Bands, and pairs of pieces and bins in turns.
+  // Also bands, and pairs of pieces and bins in turns.
   EveryWay ways{{.threads = 1},
                 {.threads = 3},
                 {.memory_limit = 3 << 20, .threads = 2, .isa = available_isas().back()}};
@@ -145,7 +145,7 @@ TEST(BinQuadrics, AreTheSameBitsEverywhere) {
   EXPECT_GT(hidden, 1000U);
 }
 
-/// A wall of spheres before everything else: behind it no sample is looked at.
+/// A wall of spheres in front of everything: no sample behind it is tested.
 TEST(BinQuadrics, AreNotMadeWhereTheyAreHidden) {
   std::vector<Vec3> centres;
   for (int y = 0; y < 20; ++y)

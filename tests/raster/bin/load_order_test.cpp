@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The order of tasks: all items once, the large ones first and alone, the small ones in their
-// order.
+// The order of tasks: all items once, large ones first and alone, small ones in order.
 #include <rastrum/raster/bin/load_order.hpp>
 
 #include <cstdint>
@@ -30,12 +29,12 @@ TEST(LoadOrder, OneThreadGoesInOrder) {
 }
 
 TEST(LoadOrder, LargeOnesComeFirstByPowersOfTwo) {
-  // A share is 102: more than 12 is large; 40, 33 and 60 have as many digits.
+  // A share is 102, so more than 12 is large; 40, 33 and 60 have the same number of digits.
   EXPECT_EQ(tasks_of({40, 3, 100, 33, 5, 60, 167}, 4), (Tasks{{6}, {2}, {0}, {3}, {5}, {1}, {4}}));
 }
 
 TEST(LoadOrder, SmallOnesGoTogether) {
-  // A share is 320 / 2: what is small is at most 20, and 5 are enough.
+  // A share is 320 / 2, so small means at most 20, and 5 tasks are enough.
   std::vector<std::uint64_t> loads(20, 1);
   loads.push_back(300);
   const Tasks tasks = tasks_of(loads, 2);

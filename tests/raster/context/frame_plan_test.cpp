@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The plan of a frame: who makes colours, and which pixels are written.
+// The plan of a frame: which stage makes colours, and which pixels are written.
 #include <rastrum/raster/context/frame_plan.hpp>
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The table of targets: every image has a row, and the pages have the rows.
+// The table of targets has a row for every image, and the pages list the rows.
 #include <rastrum/raster/context/target_table.hpp>
 
 #include <fstream>

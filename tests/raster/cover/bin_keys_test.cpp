@@ -15,7 +15,7 @@
 namespace rastrum::test::bin_keys_test {
 namespace {
 
-// Without an overdraw target, which would switch the rejection off.
+// Without an overdraw target, which would turn the rejection off.
 Frame surfaces(const RenderOptions& o, const Scene& scene, const Camera& camera) {
   Painter painter(o);
   return draw(painter, SceneBinding(scene).view(), camera, kVisible);
@@ -35,7 +35,7 @@ TEST(BinKeys, ChangesNoPixelOfGeneratedScenes) {
   }
 }
 
-// Layers of a grid of triangles, some at equal depths, some tilted, in random order.
+// Layers of a grid of triangles in random order, some at equal depths, some tilted.
 Scene stack(int layers, int cells, int size, std::uint64_t seed) {
   Random r(seed);
   Mesh mesh;
@@ -79,8 +79,7 @@ TEST(BinKeys, RejectsWhatIsHiddenAndNothingElse) {
   }
 }
 
-// The share of its fragments that a threaded frame looked at; its picture must equal the serial
-// one.
+// The share of its fragments that a threaded frame tested. Its picture must equal the serial one.
 double share_drawn(Mesh mesh, Isa isa) {
   constexpr int kSize = 256;
   const Scene scene = single(std::move(mesh));
@@ -91,8 +90,8 @@ double share_drawn(Mesh mesh, Isa isa) {
   return static_cast<double>(drawn.stats.fragments) / static_cast<double>(expected.stats.fragments);
 }
 
-// Half of a closed surface faces away. It is drawn last, and nearly all of it is dropped, in
-// whatever order the triangles come; turned inside out nothing is, and the picture is still right.
+// Half of a closed surface faces away. It is drawn last, so nearly all of it is rejected, in any
+// order of the triangles. Turned inside out nothing is rejected, and the picture stays right.
 TEST(BinKeys, WhatFacesAwayIsDrawnLast) {
   const Mesh ball = shapes::sphere(24, 48);
   Mesh inside_out = ball;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Triangles in lanes: rows of small triangles give the same keys and as many samples as blocks, and
-// setup gives the same however many triangles are left for its last lanes.
+// Triangles in SIMD lanes: rows of small triangles give the same keys and sample counts as blocks,
+// and setup does not depend on how many triangles are left for its last lanes.
 #include <algorithm>
 #include <bit>
 #include <cstdint>
@@ -23,8 +23,8 @@ namespace {
 
 constexpr Rect kImage{0, 0, 200, 190};
 
-/// Triangles around `bin`, most of them small, some with a fragment test, some flat or steep in
-/// depth, and a point now and then.
+/// Triangles around `bin`, mostly small, some with a fragment test, some flat or steep in depth,
+/// some degenerate to a point.
 std::vector<Piece> pieces_around(Rect bin, unsigned seed) {
   std::mt19937 random(seed);
   const auto uniform = [&](double low, double high) {
@@ -76,13 +76,13 @@ struct Surface {
   }
 };
 
-/// Draws all pieces; returns how many samples they cover.
+/// Draws all pieces and returns the number of covered samples.
 std::uint64_t draw(Isa isa, const std::vector<Piece>& pieces, Rect bin, Surface& surface,
                    RowKeys* rows) {
   const Kernels& kernel = kernels(isa);
   std::vector<PieceInBin> list;
   for (std::uint32_t i = 0; i < pieces.size(); ++i) list.push_back({0, i});
-  std::vector<Block> blocks(kBlocksPerBin + 10);  // so that it is often left and entered again
+  std::vector<Block> blocks(kBlocksPerBin + 10);  // so small that drawing often stops and resumes
   std::uint64_t covered = 0;
   for (std::size_t cursor = 0; cursor < list.size();) {
     const std::size_t n = kernel.cover({pieces.data(), list.data(), list.size()}, cursor, bin,
@@ -95,7 +95,7 @@ std::uint64_t draw(Isa isa, const std::vector<Piece>& pieces, Rect bin, Surface&
 }
 
 TEST(Rows, AreTheSameKeysAsBlocks) {
-  // A whole bin, one at the edge of the image, a part of one.
+  // A whole bin, one at the edge of the image, and a part of one.
   const Rect bins[] = {{64, 64, 128, 128}, {192, 128, 200, 190}, {96, 64, 128, 96}};
   for (const Rect bin : bins)
     for (const Isa isa : available_isas()) {
@@ -129,7 +129,7 @@ TEST(Rows, AreTheSameKeysAsBlocks) {
     }
 }
 
-/// Whatever lines of a cache the rows of a picture begin in, its pixels arrive, and no others.
+/// Rows may begin anywhere in a cache line: all pixels are written, and no others.
 TEST(Rows, AreStreamedWhereverTheyLie) {
   constexpr int kRows = 3, kPitch = 150;
   std::vector<Rgba8> from(static_cast<std::size_t>(kRows * kBinSize));
@@ -146,7 +146,7 @@ TEST(Rows, AreStreamedWhereverTheyLie) {
         kernel.fill(kFill, columns, kRows, filled.data() + first, kPitch);
         kernel.stream_fill(kFill, columns, kRows, streamed.data() + first, kPitch);
         kernel.end_stream();
-        // No pixel of a picture need begin at a multiple of four bytes.
+        // A picture's pixels need not be aligned to four bytes.
         std::vector<std::uint8_t> bytes((kRows * kPitch + 1) * sizeof(Rgba8));
         for (const std::size_t byte : {1U, 2U, 3U}) {
           auto* const to = reinterpret_cast<Rgba8*>(bytes.data() + byte) + first;
@@ -181,7 +181,7 @@ TEST(Rows, ALongListIsLeftInBetween) {
   for (std::uint32_t i = 0; i < pieces.size(); ++i) list.push_back({0, i});
   std::vector<Block> blocks(4 * list.size());
   for (const Isa isa : available_isas()) {
-    if (isa == Isa::scalar) continue;  // raises none
+    if (isa == Isa::scalar) continue;  // it raises none
     std::vector<std::uint64_t> keys(RowKeys::kSize);
     RowKeys rows;
     rows.keys = keys.data();
@@ -193,7 +193,7 @@ TEST(Rows, ALongListIsLeftInBetween) {
       ASSERT_GT(cursor, before) << name(isa);
     }
     EXPECT_GE(calls, 3U) << name(isa);
-    // Without rows it ends where there is no room.
+    // Without rows it stops when there is no room.
     cursor = 0;
     kernels(isa).cover({pieces.data(), list.data(), list.size()}, cursor, bin, blocks.data(),
                        blocks.size(), nullptr, nullptr);
@@ -201,7 +201,7 @@ TEST(Rows, ALongListIsLeftInBetween) {
   }
 }
 
-/// The keys that a call of setup leads to, which triangles it left to the clipper, and how many it
+/// The keys of a call of setup, the triangles that it left to the clipper, and the number that it
 /// drew, some of which cover nothing.
 struct SetUpKeys {
   std::vector<std::uint64_t> keys = std::vector<std::uint64_t>(64 * 64);
@@ -237,7 +237,7 @@ TEST(Setup, TheLastLanesAreLikeTheOthers) {
   std::mt19937 random(3);
   std::vector<ProjectedVertex> vertices(300);
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    // Three neighbours make a triangle, small or large.
+    // Three neighbouring vertices make a triangle, small or large.
     const double size = i / 3 % 3 == 0 ? 30 : 3;
     const auto place = [&](std::size_t corner) {
       return static_cast<std::int32_t>((10.0 + static_cast<double>(corner * 7 % 40) +
@@ -256,7 +256,7 @@ TEST(Setup, TheLastLanesAreLikeTheOthers) {
         SetupInput input;
         input.indices = indexed ? indices.data() : nullptr;
         input.vertices = vertices.data();
-        // The triangles behind them are not there.
+        // The last five triangles are missing.
         input.vertex_count = (count + 5) * 3;
         input.first = 5;
         input.count = count;
@@ -267,7 +267,7 @@ TEST(Setup, TheLastLanesAreLikeTheOthers) {
         ASSERT_EQ(found.keys, expected.keys);
         ASSERT_EQ(found.slow, expected.slow);
         ASSERT_EQ(found.drawn, expected.drawn);
-        // One index too many.
+        // One index is out of range.
         SetupInput too_far = input;
         too_far.vertex_count -= 1;
         Piece pieces[kSetupBatch];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Small triangles that setup writes to the bins they touch give the keys that pieces give.
+// Small triangles that setup writes to their bins give the same keys as pieces.
 #include <algorithm>
 #include <cstdint>
 #include <random>
@@ -23,7 +23,7 @@ struct Scene {
   SetupInput input;
 };
 
-/// Triangles in and around `view`, most of them small, at the corners of its bins too.
+/// Triangles in and around `view`, mostly small, also at the corners of its bins.
 Scene scene(Rect view, const std::vector<std::uint32_t>& numbers) {
   std::mt19937 random(5);
   const auto uniform = [&](double low, double high) {
@@ -64,7 +64,7 @@ void raise_pieces(const Piece* pieces, std::uint32_t n, Rect view, KeyPicture& k
     });
 }
 
-/// The keys of small triangles in parts of `side` px of the bins of `view`.
+/// Raises the keys of small triangles in parts of `side` px of the bins of `view`.
 void raise_small(Isa isa, const std::vector<BinTriangle>& triangles, const BinNumbers& numbers,
                  int side, KeyPicture& keys) {
   const Rect view = numbers.view;
@@ -101,7 +101,7 @@ void raise_small(Isa isa, const std::vector<BinTriangle>& triangles, const BinNu
 TEST(SmallTriangles, AreTheSameKeysAsPieces) {
   std::vector<std::uint32_t> numbers(kSetupBatch);
   for (std::uint32_t i = 0; i < kSetupBatch; ++i) numbers[i] = i * 37 % kSetupBatch;
-  // All of the image, whose last bins are cut, and a part of it.
+  // The whole image, whose last bins are cut, and a part of it.
   for (const Rect view : {kImage, Rect{64, 64, 192, 180}})
     for (const Isa isa : available_isas())
       for (const bool numbered : {false, true}) {

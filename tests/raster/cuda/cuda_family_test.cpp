@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Every point of the coverage × visibility table that a device has draws the bits of the serial
-// reference, each in a test of its own, so that a broken row is named; and its rows do the work of
-// the host's rows of the same names, by their counters. Through the façade's --device cuda, whose
-// code for the device this program has on the CPU (CMakeLists.txt).
+// Every point of the coverage × visibility table on a device draws the serial reference's bits.
+// Each point is a test of its own, so that failures name the row. By their counters its rows do the
+// same work as the host's rows of the same names. Uses the façade's --device cuda; this program has
+// the device code on the CPU (CMakeLists.txt).
 #include <algorithm>
 #include <cstdint>
 #include <string>
@@ -37,14 +37,14 @@ std::vector<TablePoint> device_points() {
   return points;
 }
 
-/// A frame that adds up, too.
+/// Compares the frames, and checks that the counters add up.
 testing::AssertionResult whole_and_same(const Frame& a, const Frame& b) {
   if (auto r = same_frame(a, b); !r) return r;
   return counts_add_up(a);
 }
 
-/// The counters of both that say the same of them. Tables of `hashed` are the host's where a frame
-/// has one, not each tile.
+/// Compares the counters of the same meaning. `hashed` counts tables like the host only where the
+/// host has one per frame, not per tile.
 void expect_same_work(const FrameStats& device, const FrameStats& host, const TablePoint& point) {
   static constexpr std::string_view kSame[] = {"rows",
                                                "runs",
@@ -63,7 +63,7 @@ void expect_same_work(const FrameStats& device, const FrameStats& host, const Ta
   for (const auto& [name, value] : host.counters) {
     if (std::ranges::count(kSame, name) == 0 && (owned || std::ranges::count(kTables, name) == 0))
       continue;
-    // The device has no counter of fragments that a frame does not have; the host's is 0 then.
+    // The device leaves out counters that the host has as 0.
     const auto found =
         std::ranges::find(device.counters, name, &std::pair<std::string, std::uint64_t>::first);
     EXPECT_EQ(found == device.counters.end() ? 0 : found->second, value) << name;
@@ -95,7 +95,7 @@ TEST_P(CudaTable, EqualsSerialAndDoesTheHostsWork) {
   }
 }
 
-/// From less than a pixel to all of the picture, some at one depth.
+/// From less than a pixel to the whole picture, some at one depth.
 Scene soup(int triangles, int width, int height) {
   Random random(7);
   Mesh mesh;
@@ -110,7 +110,7 @@ Scene soup(int triangles, int width, int height) {
   return single(std::move(mesh));
 }
 
-// Bands, batches, and turns of rows, bins, blocks and fragments.
+// Uses bands, batches, and turns of rows, bins, blocks and fragments.
 TEST_P(CudaTable, NothingFailsForSize) {
   const bool is_fast = GetParam().rasterizer == "binned" || GetParam().rasterizer == "hybrid";
   if (!is_fast && test_share() < 100) GTEST_SKIP() << kOnlyWhole;
@@ -129,12 +129,12 @@ TEST_P(CudaTable, NothingFailsForSize) {
   const Frame in_turns = draw(limited, seen);
   EXPECT_TRUE(whole_and_same(in_turns, expected));
   EXPECT_GT(counter(in_turns.stats, "bands"), 1U);
-  // The mesh's copy is not counted, as the mesh is not.
+  // The limit does not count the mesh or its copy.
   EXPECT_LE(in_turns.stats.peak_bytes, kLimit + std::uint64_t{kTriangles} * 3 * sizeof(Vec3));
   if (GetParam().visibility == "sorted") {
     const std::uint64_t sorts = counter(at_once.stats, "sorts");
     EXPECT_LE(sorts, 2U);
-    // No pixel has two segments of a sort: whoever raises it is alone.
+    // No pixel has two segments in a sort, so only one thread raises it.
     const std::uint64_t segments = counter(at_once.stats, "segments");
     EXPECT_LE(segments, sorts * at_once.stats.pixels_covered);
     if (sorts == 1) {
@@ -144,7 +144,7 @@ TEST_P(CudaTable, NothingFailsForSize) {
   }
 }
 
-// Points, lines and triangles over one vertex function, some behind the eye, wide, biased.
+// Points, lines and triangles of one vertex function, some behind the eye, wide or biased.
 TEST_P(CudaTable, DrawsAllTopologies) {
   constexpr int kWidth = 90, kHeight = 61;
   Painter serial(device_options(kWidth, kHeight, Device::serial));
@@ -187,7 +187,7 @@ INSTANTIATE_TEST_SUITE_P(Points, CudaTable, testing::ValuesIn(device_points()),
 
 class CudaRows : public CudaTable {};
 
-// Sizes of bins and tiles, orders and ways of small triangles are the host's, too.
+// The host's sizes of bins and tiles, orders and ways of small triangles work too.
 TEST_P(CudaRows, TuningsAreTheHosts) {
   constexpr int kWidth = 300, kHeight = 140;
   const Viewed seen(soup(1500, kWidth, kHeight), pixel_camera(kWidth, kHeight));
@@ -256,7 +256,7 @@ TEST_F(CudaChoice, SaysWhatItTook) {
   EXPECT_TRUE(holds(stats_of(o).device_why, "persistent"));
 }
 
-// Translucent pieces are the layers', whatever the row; a visibility of another kind is refused.
+// Translucent pieces go to the layers in every row. Any other visibility is refused.
 TEST_F(CudaChoice, LayersCombineWithTheRows) {
   constexpr int kSize = 64;
   const Viewed seen(soup(150, kSize, kSize), pixel_camera(kSize, kSize));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Materials, alpha masks and pictures that are drawn over, on a device: the bits of the host's
-// scalar form. In this program the device is the CPU (CMakeLists.txt).
+// Materials, alpha masks and drawing over a picture on a device have the bits of the host's scalar
+// form. In this program the device is the CPU (CMakeLists.txt).
 #include <cstdint>
 #include <utility>
 
@@ -30,7 +30,7 @@ const Camera kNear{.eye = {0.2F, 0.1F, 1.1F}, .near_plane = 0.3F};
 
 using CudaMaterials = CudaTest;
 
-// All textures, normal maps, masks and vertex colours, opaque; in one band and in several.
+// Opaque, with all textures, normal maps, masks and vertex colours; in one band and in several.
 TEST_F(CudaMaterials, EqualSerial) {
   const Viewed seen(everything(), kNear);
   for (const Shader shader : {Shader::material, Shader::phong, Shader::depth, Shader::wireframe}) {
@@ -53,8 +53,8 @@ TEST_F(CudaMaterials, EqualSerial) {
   }
 }
 
-// The papers' rasterizers leave what is tested to the same code, and the visibility that shades at
-// once knows no colour of it.
+// The papers' rasterizers leave tested fragments to the same code, so the visibility that shades at
+// once has no colours for them.
 TEST_F(CudaMaterials, TheFamilyEqualsSerial) {
   const Viewed seen(everything(), kNear);
   Painter serial(options(Device::serial));
@@ -72,7 +72,7 @@ TEST_F(CudaMaterials, TheFamilyEqualsSerial) {
   }
 }
 
-// Whether a mask cuts a hole depends on nothing but the fragment: what lies behind shows.
+// A mask's holes depend only on the fragment, so they show what is behind.
 TEST_F(CudaMaterials, MasksShowWhatLiesBehind) {
   Scene scene = everything();
   for (Material& m : scene.materials) m.alpha_mode = AlphaMode::opaque;
@@ -87,8 +87,8 @@ TEST_F(CudaMaterials, MasksShowWhatLiesBehind) {
   EXPECT_EQ(frame.stats.fragments, whole.stats.fragments);
 }
 
-// Materials that blend, in linear light or under a lit shader; with an opacity; with masks among
-// them.
+// Materials that blend, in linear light or under a lit shader, with an opacity, and with masks
+// among them.
 TEST_F(CudaMaterials, LayersEqualTheThreads) {
   struct Way {
     Shader shader;
@@ -119,7 +119,7 @@ TEST_F(CudaMaterials, LayersEqualTheThreads) {
   EXPECT_GT(blended, 10000U);
 }
 
-// A scene without materials whose vertex colours are translucent has one that blends.
+// Without materials, translucent vertex colours imply a material that blends.
 TEST_F(CudaMaterials, TranslucentVertexColoursEqualTheThreads) {
   Scene scene = everything();
   scene.materials.clear();
@@ -142,10 +142,10 @@ TEST_F(CudaMaterials, TexturesAreCopiedWhenTheyAreNew) {
     EXPECT_TRUE(same_picture(frame, draw(serial, binding.view(), kNear), 0));
     return counter(frame.stats, "textures copied");
   };
-  // Each of the three is colour for one material and data for another.
+  // Each of the three is a colour for one material and data for another.
   EXPECT_EQ(copied(), 6U);
   EXPECT_EQ(copied(), 0U);
-  scene.textures[0].wrap_u = Wrap::clamp_to_edge;  // that is no texel
+  scene.textures[0].wrap_u = Wrap::clamp_to_edge;  // changes no texel
   EXPECT_EQ(copied(), 0U);
   for (Rgba8& texel : scene.textures[2].image.pixels()) texel.g ^= 0xff;
   EXPECT_EQ(copied(), 2U);
@@ -186,7 +186,7 @@ TEST_F(CudaMaterials, PicturesDrawnOverEqualTheThreads) {
     for (const std::uint64_t limit : {std::uint64_t{0}, std::uint64_t{2500000}}) {
       RenderOptions o = options(Device::cuda, way.shader);
       o.memory_limit = limit;
-      o.threads = 1;  // each has memory of its own
+      o.threads = 1;  // each thread has its own memory
       const Frame frame = drawn_over(o, first.view(), second.view());
       EXPECT_EQ(frame.stats.device == Device::cuda, way.on_device) << frame.stats.device_why;
       if (way.on_device && way.shader == Shader::material) {
@@ -200,8 +200,8 @@ TEST_F(CudaMaterials, PicturesDrawnOverEqualTheThreads) {
   }
 }
 
-// More pieces are tested than the queue of a small memory holds: then, too, each fragment is drawn
-// once, over the picture that was there, by the device's shaders, the host's, and in layers.
+// More pieces are tested than fit into the queue of a small memory. Still each fragment is drawn
+// once over the existing picture, by the device's shaders, by the host's, and in layers.
 TEST_F(CudaMaterials, PicturesDrawnOverInLittleMemoryEqualTheThreads) {
   constexpr int kAcross = 128, kDown = 100;
   const Viewed first(single(shapes::soup(40, 0.3F, 0.9F))),

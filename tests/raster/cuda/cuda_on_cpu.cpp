@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A program whose device is the CPU: its code for devices is linked (tests/CMakeLists.txt) and
-// takes the place of the library that is opened, and this is its driver.
+// A program whose device is the CPU: the linked device code (tests/CMakeLists.txt) replaces the
+// library that would be opened, and this file replaces the driver.
 #include <rastrum/parallel/cuda/driver.hpp>
 #include <rastrum/parallel/cuda/host_stream.hpp>
 #include <rastrum/parallel/cuda/host_walls.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Pieces that a device makes, with the device's code on the CPU.
+// Pieces that device code makes, here on the CPU.
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
@@ -21,7 +21,7 @@
 namespace rastrum::test::cuda_pieces_test {
 namespace {
 
-/// Room of a queue: more than the pieces need.
+/// Room of a queue: more than needed.
 constexpr std::uint64_t kRoom = 1 << 16;
 
 struct KeepsAll {
@@ -44,7 +44,8 @@ struct MadePieces {
   std::vector<raster::Piece> pieces;  ///< in order of submission
   raster::Outcomes sum;
 };
-/// The pieces of all primitives that keep(piece) holds for, counted and written as the listings do.
+/// The pieces of all primitives for which keep(piece) holds, counted and written as the device's
+/// listings do.
 template <class Keep>
 MadePieces make_pieces(parallel::Cuda& exec, const raster::DeviceScene<parallel::Cuda>& scene,
                        Keep keep, const raster::SamplePattern& samples = {}) {
@@ -57,7 +58,7 @@ MadePieces make_pieces(parallel::Cuda& exec, const raster::DeviceScene<parallel:
           parallel::reduce(exec, outcomes, raster::Outcomes{}, raster::AddOutcomes{})};
 }
 
-// From arrays that are on the device already.
+// From arrays that are already on the device.
 TEST(CudaPieces, AreTheHostsInOrderOfSubmission) {
   constexpr int kWidth = 200, kHeight = 120;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
@@ -85,8 +86,8 @@ TEST(CudaPieces, AreTheHostsInOrderOfSubmission) {
                                                       project_first);
       ASSERT_EQ(scene.primitives(), total);
       for (const int samples : {1, 4, 16}) {
-        // Finds the pieces that each sample sees, and the fate of a primitive that some samples
-        // see.
+        // Finds the pieces that each sample sees, and the outcome of primitives that only some
+        // samples see.
         const auto pattern = raster::SamplePattern::of(samples);
         std::vector<std::vector<raster::Piece>> expected(static_cast<std::size_t>(samples));
         raster::Outcomes sum;
@@ -111,7 +112,7 @@ TEST(CudaPieces, AreTheHostsInOrderOfSubmission) {
             const raster::Piece p = raster::moved(piece, pattern.at[s]);
             if (!raster::piece_bounds(p, {0, 0, kWidth, kHeight}).empty()) seen.push_back(p);
           }
-          // Pieces of a clipped primitive that the first sample does not see come later.
+          // Pieces of a clipped primitive that the first sample misses come later.
           if (samples > 1) {
             std::ranges::sort(seen, by_bytes);
             std::ranges::sort(expected[s], by_bytes);
@@ -123,7 +124,7 @@ TEST(CudaPieces, AreTheHostsInOrderOfSubmission) {
   }
 }
 
-// Flagged pieces are left out of the keys, in all three sizes, and kept for who draws them.
+// Flagged pieces are left out of the keys, in all three size classes, and kept for their own stage.
 TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
   constexpr int kSize = 256;
   Random random(5);
@@ -178,7 +179,7 @@ TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
   EXPECT_EQ(kept, keys_of({draws, 1}, 0));
   EXPECT_NE(kept, all);
 
-  // Pieces that find a queue full are drawn where they are found.
+  // If a queue is full, pieces are drawn where they are found.
   fragments.resize(1);
   for (const std::uint64_t room_of_pieces : {kRoom, std::uint64_t{7}, std::uint64_t{0}})
     for (const std::uint64_t room_of_tiles : {kRoom, std::uint64_t{21}, std::uint64_t{0}}) {
@@ -198,11 +199,11 @@ TEST(CudaPieces, AreKeptAndLeftOutByTheirFlags) {
   EXPECT_GT(ids.size(), 150U);
 }
 
-// Pieces that by-size leaves out lie in the queue of others, each once. A clipped triangle's pieces
-// lie side by side, with a piece of another triangle behind them. The queue's counter says when the
-// queue was too small.
+// Pieces that by-size leaves out are in the queue of others, each once. A clipped triangle's pieces
+// are adjacent, followed by another triangle's piece. The queue's counter shows if the queue was
+// too small.
 TEST(CudaPieces, WhatIsLeftToOthersIsInTheirQueue) {
-  // Its arrays are the host's: no wall stands before what is allocated while this lives.
+  // Its arrays are the host's, so memory that is allocated during its life has no wall.
   const parallel::cuda_system::Walls::Unseen on_either_side;
   constexpr int kWidth = 200, kHeight = 120;
   std::uint64_t clipped = 0, too_many = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The device's rasterizer draws the bits of the serial reference: through the façade's --device
-// cuda, whose code for the device this program has on the CPU (CMakeLists.txt).
+// The device's rasterizer draws the serial reference's bits, through the façade's --device cuda.
+// This program has the device code on the CPU (CMakeLists.txt).
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -62,7 +62,7 @@ INSTANTIATE_TEST_SUITE_P(Variants, CudaFamily,
                                          Variant{17, 128, Shader::lambert, Cull::none},
                                          Variant{65, 33, Shader::material, Cull::none}));
 
-/// Soup from less than a pixel to all of the picture.
+/// A soup from less than a pixel to the whole picture.
 Scene soup(int triangles, int width, int height) {
   Random random(7);
   Mesh mesh;
@@ -76,8 +76,8 @@ Scene soup(int triangles, int width, int height) {
   return single(std::move(mesh));
 }
 
-// Each of the three sizes draws everything once, and neither they nor bands and batches change a
-// bit.
+// Each of the three size classes can draw everything, and neither they nor bands and batches change
+// a bit.
 TEST_F(CudaRasterizer, SizesAndCutsChangeNothing) {
   constexpr int kWidth = 300, kHeight = 500, kTriangles = 30000;
   const Viewed seen(soup(kTriangles, kWidth, kHeight), pixel_camera(kWidth, kHeight));
@@ -98,7 +98,7 @@ TEST_F(CudaRasterizer, SizesAndCutsChangeNothing) {
     const Frame frame = draw(cuda, seen);
     ASSERT_TRUE(same_frame(frame, expected))
         << cut.small_px << ' ' << cut.large_px << ' ' << cut.limit;
-    // The mesh's copy is not counted, as the mesh is not.
+    // The limit does not count the mesh or its copy.
     if (cut.limit > 0) {
       EXPECT_LE(frame.stats.peak_bytes, cut.limit + std::uint64_t{kTriangles} * 3 * sizeof(Vec3));
     }
@@ -216,7 +216,7 @@ struct OnDevice {
     targets.ids = view<std::int64_t>(ids);
   }
   [[nodiscard]] SceneView scene() const { return {.instances = {&instance, 1}}; }
-  /// Copies the targets into a frame's images of their size.
+  /// Copies the targets into a frame's images of the same size.
   void read(Frame& to) const {
     color8.read(to.color8.pixels().data(), to.color8.pixels().size_bytes());
     color.read(to.color.pixels().data(), to.color.pixels().size_bytes());
@@ -259,8 +259,8 @@ class InPlace : public CudaTest {
     o.in_place = true;
     return by(std::move(o), Device::cuda);
   }
-  /// One wait, no algorithm of Thrust's, nothing allocated. Each launch costs some microseconds and
-  /// each wait some twenty, so whoever adds one changes these numbers and says why.
+  /// Expects one wait, no Thrust algorithm and no allocation. A launch costs some microseconds and
+  /// a wait about twenty, so any addition must change these numbers and give a reason.
   static void expect_work(const FrameStats& stats, std::uint64_t launches, std::uint64_t copies) {
     EXPECT_EQ(counter(stats, "launches"), launches);
     EXPECT_EQ(counter(stats, "device algorithms"), 0U);
@@ -292,7 +292,7 @@ TEST_F(InPlace, NothingIsCopied) {
   EXPECT_TRUE(same_surfaces(frame, expected));
   EXPECT_TRUE(same_picture(frame, expected, 0));
   EXPECT_EQ(stats.fragments, expected.stats.fragments);
-  // Blocks of the arena are up to a quarter larger than what is asked for.
+  // An arena's blocks can be a quarter larger than what was asked for.
   const std::uint64_t arrays = mesh.positions.size() * (sizeof(Vec3) + sizeof(Vec4) + 2 * 4) +
                                std::uint64_t{kWidth} * kHeight * (4 + 16 + 4 + 8);
   EXPECT_GE(copied, stats.peak_bytes + arrays);
@@ -318,10 +318,10 @@ TEST_F(InPlace, BadIndicesAndTargetsAreRefused) {
   refuses(bad_index, bad_index.targets, "1 primitives have an index");
 }
 
-// A frame waits for the caller's stream where it is told of one.
+// A frame waits for the caller's stream if it has one.
 TEST_F(InPlace, WhatWritesTheArraysComesFirst) {
   const Frame expected = on_serial();
-  // A mesh elsewhere at first; what moves it is work of a stream.
+  // The mesh starts elsewhere; work in a stream moves it.
   const std::vector<Vec3> positions = mesh.positions;
   for (Vec3& p : mesh.positions) p = {0, 0, -1e6F};
   const OnDevice there(mesh, kWidth, kHeight);
@@ -338,17 +338,17 @@ TEST_F(InPlace, WhatWritesTheArraysComesFirst) {
 
 // The second frame of its kind, with arrays and targets on the device.
 TEST_F(InPlace, LaunchesAndWaitsOfAFrame) {
-  mesh.colors = {};  // whose indices a sum over the device checks
+  mesh.colors = {};  // their indices need a check, which is a sum on the device
   const OnDevice there(mesh, kWidth, kHeight);
   Painter in_place(InPlace::in_place(options));
   (void)in_place.render(there.scene(), camera, there.targets);
   const FrameStats stats = in_place.render(there.scene(), camera, there.targets);
-  // Vertices, three that clear, four that draw, one that resolves.
+  // Vertices, three to clear, four to draw, one to resolve.
   expect_work(stats, 9, 6);
 }
 
-// The same for translucent triangles, in the third frame: the first one guesses how many records
-// there are.
+// The same for translucent triangles, in the third frame, because the first one guesses the number
+// of records.
 TEST_F(InPlace, LaunchesAndWaitsOfALayeredFrame) {
   mesh.colors = {};
   mesh.indices.resize(1500);
@@ -366,13 +366,13 @@ TEST_F(InPlace, LaunchesAndWaitsOfALayeredFrame) {
     EXPECT_TRUE(same_picture(frame, expected, 0));
     EXPECT_GT(counter(stats, "translucent fragments"), 10000U);
     EXPECT_EQ(counter(stats, "bands listed"), 0U);
-    // Nine as for opaque frames, one for the colours of the surface, and eight for layers.
+    // Nine as for opaque frames, one for the colours of the surface, eight for layers.
     expect_work(stats, 18, 6);
   }
 }
 
-// The same for triangles that are drawn over what a picture holds, which tests each fragment. The
-// arrays are the host's and were copied with the first frame; the picture goes there and back.
+// The same for triangles over an existing picture, which test each fragment. The arrays are the
+// host's, copied by the first frame; the picture is copied to the device and back.
 TEST_F(InPlace, LaunchesAndWaitsOfATestedFrame) {
   mesh.colors = {};
   const SceneBinding binding(scene);
@@ -386,8 +386,8 @@ TEST_F(InPlace, LaunchesAndWaitsOfATestedFrame) {
   expect_work(stats, 11, 10);
 }
 
-// A caller's arrays stay on the device while they are what they were: all that is changed shows,
-// one bit of one value too, in place or elsewhere.
+// A caller's arrays stay on the device while they do not change. Every change shows, even of one
+// bit, in place or elsewhere.
 TEST_F(InPlace, AMeshIsCopiedWhenItIsNewOrWasChanged) {
   options.device = Device::cuda;
   Painter cuda(options);
@@ -420,8 +420,8 @@ TEST_F(InPlace, AMeshIsCopiedWhenItIsNewOrWasChanged) {
   EXPECT_LE(copied("elsewhere"), 1U);
   mesh.positions.resize(mesh.positions.size() + 3, {0, 0, 0.5F});
   EXPECT_EQ(copied("longer"), 1U);
-  // Arrays that a frame does not read are dropped, and those that a failed frame was about to copy
-  // are copied by the next.
+  // Arrays that a frame does not read are dropped, and arrays that a failed frame did not copy are
+  // copied by the next.
   const Scene other = soup(10, kWidth, kHeight);
   (void)draw(cuda, SceneBinding(other).view(), camera);
   (void)draw(cuda, SceneBinding(other).view(), camera);
@@ -432,7 +432,7 @@ TEST_F(InPlace, AMeshIsCopiedWhenItIsNewOrWasChanged) {
   EXPECT_EQ(copied("after a failure"), 4U);
 }
 
-/// Points, lines and triangles over one vertex function, some behind the eye, beyond the guard band
+/// Points, lines and triangles of one vertex function, some behind the eye, beyond the guard band
 /// or not finite; with widths, biases and windings.
 struct Mix {
   std::vector<Vec4> clip;
@@ -498,7 +498,7 @@ TEST_F(CudaRasterizer, DrawsOfAllTopologiesEqualSerial) {
   EXPECT_GT(seen.dropped, 100U);
 }
 
-// Points and lines are the same at all samples, triangles are not. Without colours, as the shader
+// Points and lines are equal at all samples, triangles are not. Without colours, since the shader
 // is the host's.
 TEST_F(CudaRasterizer, SamplesOfAllTopologiesEqualSerial) {
   constexpr int kWidth = 83, kHeight = 61;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Each call of a frame that a driver may refuse is refused once, and the frame after it is right
+// Refuses each device call of a frame once, and expects the next frame to be right
 // (support/device_faults.hpp).
 #include <cstdint>
 #include <string>
@@ -50,12 +50,12 @@ TEST_P(FaultsOfADevice, EndAFrameAndNoMore) {
   o.threads = 1;
   const Viewed seen(triangles(), pixel_camera(kWidth, kHeight));
   Painter serial(o);
-  // Without overdraw, which is not counted for layers.
+  // Without overdraw, which layers do not count.
   const Frame expected = draw(serial, seen, kPicture);
   o.device = Device::cuda;
   o.rasterizer = look.rasterizer;
 
-  // From nothing, so that memory is asked for, too.
+  // From a new renderer, so that memory is allocated too.
   const std::uint64_t refused = refuse_each_call(
       [&] { return Painter(o); },
       [&](Painter& cuda) {

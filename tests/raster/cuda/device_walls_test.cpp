@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Neither side reads the other's memory: host code that reads what lies on a device, and a kernel
-// that reads what lies on the host, end the process under the address sanitizer
-// (parallel/cuda/host_walls.hpp), whatever they read. All tests of this program run between the
-// walls, and so do the terrain's.
+// Host and device must not read each other's memory. Under the address sanitizer, host code that
+// reads device memory and a kernel that reads host memory end the process, whatever they read
+// (parallel/cuda/host_walls.hpp). All tests of this program and of the terrain's run with these
+// walls.
 #include <cstdint>
 #include <cstdlib>
 #include <vector>

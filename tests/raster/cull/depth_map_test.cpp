@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The depth map hides what lies behind the surface, block by block of a view.
+// The depth map hides what is behind the surface, by blocks of a view.
 #include <rastrum/raster/cull/depth_map.hpp>
 
 #include <cmath>
@@ -14,7 +14,7 @@
 namespace rastrum::raster::depth_map_test {
 namespace {
 
-/// A view all of whose keys are of one surface at depth 0.5.
+/// A view whose keys are all of one surface at depth 0.5.
 struct FlatView {
   Rect view;
   std::vector<std::uint64_t> keys = std::vector<std::uint64_t>(
@@ -23,7 +23,7 @@ struct FlatView {
   const Kernels& kernel = kernels(Isa::scalar);
 };
 
-// The smaller id wins at equal depths, so triangles that are as near as the surface are not hidden.
+// At equal depths the smaller id wins, so triangles at the surface's depth are not hidden.
 TEST(DepthMap, WhatIsAsNearIsNotHidden) {
   MemoryAccount memory;
   DepthMap depths(memory);
@@ -41,7 +41,7 @@ TEST(DepthMap, WhatIsAsNearIsNotHidden) {
   EXPECT_FALSE(depths.hides(c));
   c.highest = std::nextafter(0.5F, 0.0F);
   EXPECT_TRUE(depths.hides(c));
-  flat.keys[5 * 64 + 63] = 0;  // nothing is there: block (2, 1)
+  flat.keys[5 * 64 + 63] = 0;  // an empty sample in block (2, 1)
   look();
   EXPECT_TRUE(depths.hides(c));  // beyond the picture's edge: column 23 of 20
   flat.keys[5 * 64 + 56] = 0;
@@ -53,7 +53,7 @@ TEST(DepthMap, WhatIsAsNearIsNotHidden) {
   EXPECT_FALSE(depths.hides(c));
 }
 
-// Where many threads share a bin, each looks at its own part.
+// If several threads share a bin, each updates its own part.
 TEST(DepthMap, APartOfABinSaysNothingOfTheRest) {
   MemoryAccount memory;
   DepthMap depths(memory);
@@ -66,7 +66,7 @@ TEST(DepthMap, APartOfABinSaysNothingOfTheRest) {
   };
   depths.begin(flat.view);
   depths.look(flat.kernel, flat.surface, {0, 0, 32, 64});
-  depths.look(flat.kernel, flat.surface, {64, 32, 96, 64});  // of a bin that the view cuts
+  depths.look(flat.kernel, flat.surface, {64, 32, 96, 64});  // a part of a bin that the view cuts
   EXPECT_TRUE(hides(0, 0, 4));
   EXPECT_TRUE(hides(8, 4, 12));
   EXPECT_FALSE(hides(0, 0, 8));

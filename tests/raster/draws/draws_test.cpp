@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The draws of a frame: each is shaded and tested by what is its own, and what cannot be drawn is
-// refused with its number.
+// The draws of a frame: each has its own shader and test, and errors name the draw's number.
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -64,7 +63,7 @@ bool second_hole(const Pair& v, const Fragment& f) {
   return v.b > 1.2F && f.y % 4 == 0;
 }
 
-/// The varying of Two::both.
+/// The varyings of Two::both.
 struct Both {
   Scalar first;
   Pair second;
@@ -106,7 +105,7 @@ auto program_of_both(float alpha) {
       });
 }
 
-/// Two programs with varyings of their own, and one that is both, as it had to be written before.
+/// Two programs with their own varyings, and one program that combines them.
 struct Two {
   explicit Two(float alpha)
       : first(first_program(alpha)), second(second_program(alpha)), both(program_of_both(alpha)) {}
@@ -150,7 +149,7 @@ TEST(Draws, AreShadedAndTestedEachByItsProgram) {
         const std::uint32_t indices[] = {3, 4, 5};
         std::array<Draw, 3> whole{two.both.draw(6), two.both.draw(6, indices), two.both.draw(6)};
         whole[0].primitive_count = whole[2].primitive_count = 1;
-        // The third is the first again, behind itself: it counts where something is blended.
+        // The third is the first again, slightly behind: it counts where something is blended.
         parts[2].depth_bias = whole[2].depth_bias = -0.1F;
         if (alpha < 1)
           for (Draw* const d : {parts.data(), whole.data()})
@@ -168,7 +167,7 @@ TEST(Draws, AreShadedAndTestedEachByItsProgram) {
       }
 }
 
-// A built-in shader finds its instances by the order of its own draws, whatever stands between.
+// A built-in shader finds its instances by the order of its own draws, among any others.
 TEST(Draws, MayHaveABuiltInShader) {
   Scene scene{.meshes = {shapes::sphere(12, 24), shapes::boxes(3)}};
   scene.meshes[1].colors.values.assign(scene.meshes[1].positions.size(), {0.2F, 0.9F, 0.3F, 1});
@@ -186,7 +185,7 @@ TEST(Draws, MayHaveABuiltInShader) {
     draws[0].depth_bias = draws[2].depth_bias = -0.45F;
     draws[1].shading = draws[3].shading = raster::LitShading{Shader::phong, &lit_scene};
     draws[4].shading = raster::LitShading{Shader::normal, &lit_scene};
-    // the lower half of the sphere again, before itself
+    // the lower half of the sphere again, slightly in front
     draws[4].depth_bias = 0.05F;
     draws[4].primitive_count /= 2;
     const WithExtra mixed = draw_all(o, draws, two.first, two.first);
@@ -207,7 +206,7 @@ TEST(Draws, MayHaveABuiltInShader) {
         const Rgba8 c = mixed.frame.color8(x, y);
         const bool is_sphere = lit.ids(x, y) < static_cast<std::int64_t>(meshes[0].primitive_count);
         if (which == 4 || which % 2 == 1) {
-          // Where it is the nearest of the scene alone.
+          // Where it is also the nearest in the scene alone.
           if (is_sphere == (which != 3)) {
             EXPECT_EQ(c, (which == 4 ? with_normals : lit).color8(x, y)) << x << ", " << y;
           }

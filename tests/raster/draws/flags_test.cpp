@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Flags by material: a draw whose triangles are of several kinds gives each piece and each micro
-// fragment the flags of its own, through every rasterizer and however short the runs are.
+// Flags by material: in a draw of mixed triangles each piece and each micro fragment has its own
+// flags, with every rasterizer and however short the runs are.
 #include <algorithm>
 #include <cstdint>
 #include <vector>
@@ -25,7 +25,7 @@ namespace {
 
 constexpr int kWidth = 150, kHeight = 100;
 
-/// Drops every fragment that it is asked about.
+/// Drops every fragment that it tests.
 class DropsAll final : public raster::FragmentTest {
  public:
   std::uint64_t test(const raster::FrameGeometry&, const raster::Piece&, const raster::Block&,
@@ -34,7 +34,7 @@ class DropsAll final : public raster::FragmentTest {
   }
 };
 
-/// Triangles from less than a pixel to a third of the picture, some cut by its edges.
+/// Triangles from less than a pixel to a third of the picture; its edges cut some.
 struct Mixed {
   std::vector<Vec3> positions;
   std::vector<std::uint32_t> face_materials;

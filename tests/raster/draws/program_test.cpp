@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The programmable pipeline: interpolation against its definition in long double, the built-in
-// phong written again by a caller, discard.
+// phong as a caller's shader, discard.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -30,7 +30,6 @@ struct Drawn {
   Image<std::int64_t> ids{kWidth, kHeight};
   FrameStats stats;
 };
-/// One draw of a program.
 template <class Program>
 Drawn draw_by(const RenderOptions& o, const Program& program, raster::Draw draw) {
   Drawn d;
@@ -54,8 +53,8 @@ struct Corner {
   float value;
 };
 
-/// The pixel's ray through homogeneous clip space, or snapped positions and 1/w: what the
-/// conventions say, without the library's planes.
+/// The interpolated value at the pixel's ray, by the conventions and without the library's planes:
+/// in homogeneous clip space, or from snapped positions and 1/w.
 long double exact_value(const Corner (&c)[3], int x, int y, bool clipped) {
   using L = long double;
   const raster::Viewport viewport = raster::Viewport::of(kWidth, kHeight);
@@ -83,8 +82,8 @@ long double exact_value(const Corner (&c)[3], int x, int y, bool clipped) {
   return (b[0] * c[0].value + b[1] * c[1].value + b[2] * c[2].value) / (b[0] + b[1] + b[2]);
 }
 
-/// The same of a line, along its major axis: of the snapped ends with 1 / w, or of the homogeneous
-/// ones.
+/// The same for a line, along its major axis: from the snapped ends and 1 / w, or from the
+/// homogeneous ones.
 long double exact_value(const Corner (&c)[2], int x, int y, bool clipped) {
   using L = long double;
   const auto between = [&](L u0, L u1, L u) {  // u: homogeneous coordinate over w at the sample
@@ -108,7 +107,7 @@ long double exact_value(const Corner (&c)[2], int x, int y, bool clipped) {
   return (b0 * c[0].value + b1 * c[1].value) / (b0 + b1);
 }
 
-/// Three corners are a triangle, two a line 3 px wide.
+/// Three corners make a triangle, two a line 3 px wide.
 template <std::size_t N>
 void expect_exact(const Corner (&corners)[N], bool clipped) {
   const Program program(
@@ -144,7 +143,7 @@ TEST(Program, VaryingsArePerspectiveCorrect) {
 }
 
 TEST(Program, VaryingsOfNearClippedTrianglesToo) {
-  // The second vertex is nearer than the near plane (z > w), the third behind the eye.
+  // The second vertex is in front of the near plane (z > w), the third behind the eye.
   expect_exact(
       {{{-1.2F, -1, 0.1F, 2}, 1}, {{0.2F, -0.1F, 0.1F, 0.05F}, 2}, {{-0.3F, 1.7F, 0.1F, 2.5F}, 7}},
       true);
@@ -188,7 +187,7 @@ TEST(Program, APointKnowsWhereInItsSquareItIs) {
         return Vec4{f.point.x, f.point.y, 0, 1};
       });
   raster::Draw draw = program.draw(1, {}, Topology::points);
-  draw.point_size = 8;  // about (125, 37.5): columns 121 to 128, rows 34 to 41 from its top edge on
+  draw.point_size = 8;  // about (125, 37.5): columns 121 to 128, rows 34 to 41 from the top edge
   const auto& [color, ids, stats] = draw_by(options(Device::threads), program, draw);
   ASSERT_EQ(stats.pixels_covered, 64U);
   for (int y = 0; y < 8; ++y)
@@ -199,7 +198,7 @@ TEST(Program, APointKnowsWhereInItsSquareItIs) {
 }
 
 TEST(Program, SeveralTargetsGetWhatTheShaderReturns) {
-  // Two triangles over each other; one shader of one output, one of three.
+  // Two triangles over each other; one shader has one output, the other three.
   const auto vertex = [](std::uint32_t i) {
     constexpr Vec4 kCorners[] = {{-0.8F, -0.8F, 0.5F, 1}, {0.9F, -0.7F, 0.5F, 1},
                                  {0, 0.9F, 0.5F, 1},      {-0.9F, 0.6F, 0.4F, 1},
@@ -250,7 +249,7 @@ TEST(Program, SeveralTargetsGetWhatTheShaderReturns) {
       }
     for (const int n : seen) EXPECT_GT(n, 1000) << visibility.name;
 
-    // More targets than outputs, and targets of another size, are refused.
+    // Refuses more targets than outputs, and targets of another size.
     draw = one.draw(6);
     EXPECT_THROW((void)renderer.draw({&draw, 1}, one, nullptr, targets), Error);
     Image<Vec4> small(8, 8);
@@ -262,7 +261,7 @@ TEST(Program, SeveralTargetsGetWhatTheShaderReturns) {
 }
 
 TEST(Program, FrontIsWhatTheWindingSays) {
-  // One counter-clockwise triangle, one clockwise, and both again with a corner behind the eye.
+  // One counter-clockwise and one clockwise triangle, and both again with a corner behind the eye.
   const Vec4 corners[] = {{-0.9F, -0.9F, 0.5F, 1}, {-0.1F, -0.9F, 0.5F, 1}, {-0.5F, 0.9F, 0.5F, 1},
                           {0.1F, -0.9F, 0.5F, 1},  {0.5F, 0.9F, 0.5F, 1},   {0.9F, -0.9F, 0.5F, 1}};
   for (const bool clipped : {false, true}) {
@@ -330,7 +329,7 @@ TEST(Program, APhongOfOnesOwnIsTheBuiltInOne) {
 }
 
 TEST(Program, DiscardedFragmentsAreHoles) {
-  // A quad whose varying is its pixel position, over a smaller depth's quad of the same program.
+  // A quad whose varying is its pixel position, over a farther quad of the same program.
   const auto vertex = [](std::uint32_t i) {
     const bool behind = i >= 6;
     constexpr int kCorner[6] = {0, 1, 2, 0, 2, 3};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Distances of a block from its keys: every instruction set against the formulas of
-// docs/outputs.md ("Depth in world units"), for each kind of camera.
+// A block's distances from its keys: every instruction set against the formulas of docs/outputs.md
+// ("Depth in world units"), for each kind of camera.
 #include <rastrum/raster/resolve/distances.hpp>
 
 #include <bit>
@@ -25,7 +25,7 @@ double formula(const Camera& c, double d) {
   return f == static_cast<double>(kInfinity) ? n / d : n * f / (d * (f - n) + n);
 }
 
-/// Nothing, the far plane with a number, the near plane, denormals and what lies between.
+/// Empty, the far plane with an id, the near plane, denormals, and depths between them.
 void make_keys(std::uint64_t seed, std::uint64_t* keys) {
   std::mt19937_64 random(seed);
   for (int i = 0; i < 64; ++i) {
@@ -43,7 +43,7 @@ TEST(Distances, AreTheFormulasBitsOnEveryInstructionSet) {
   finite.far_plane = 70;
   orthographic.far_plane = 70;
   orthographic.orthographic = true;
-  // The same as `finite`, by its matrix.
+  // The same camera as `finite`, by its matrix.
   const Camera by_matrix =
       camera_from_matrix(world_to_clip(finite, kWidth, kHeight), ClipDepth::reversed);
   for (const Camera& camera : {perspective, finite, orthographic, by_matrix}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The clipper by itself: against a rasterizer in homogeneous coordinates that never clips (Olano
-// and Greer, "Triangle scan conversion using 2D homogeneous coordinates", 1997), in long double.
+// The clipper against a rasterizer in homogeneous coordinates, which never clips (Olano and Greer,
+// "Triangle scan conversion using 2D homogeneous coordinates", 1997), in long double.
 #include <rastrum/raster/rules/clip.hpp>
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ constexpr int kWidth = 48, kHeight = 40;
 // A line a x + b y + c in px; ≥ 0 is inside.
 struct Line {
   Real a = 0, b = 0, c = 0;
-  // Signed distance in px; a line at infinity has every sample on one side.
+  // Signed distance in px. A line at infinity has every sample on one side.
   [[nodiscard]] Real distance(Real x, Real y) const {
     const Real n = std::hypot(a, b), e = a * x + b * y + c;
     return n > 0 ? e / n : std::copysign(std::numeric_limits<Real>::infinity(), e);
@@ -78,7 +78,7 @@ struct ExactTriangle {
     const Real x = px + Real(0.5), y = py + Real(0.5);
     return (z.a * x + z.b * y + z.c) / (w.a * x + w.b * y + w.c);
   }
-  // How deep inside all of the half planes the sample lies, in px; negative outside.
+  // How far inside of all half planes the sample is, in px; negative outside.
   [[nodiscard]] Real depth(int px, int py) const {
     Real d = std::numeric_limits<Real>::infinity();
     for (const Line& l : lines) d = std::min(d, l.distance(px + Real(0.5), py + Real(0.5)));
@@ -86,8 +86,8 @@ struct ExactTriangle {
   }
 };
 
-// How far snapping may move a corner. Corners that the clipper made come from float64; corners of
-// the triangle itself come from float32 px with four roundings of 2⁻²⁴.
+// How far snapping may move a corner. The clipper's corners come from float64, the triangle's own
+// from float32 px with four roundings of 2⁻²⁴.
 Real tolerance(const ProjectedTriangle& t) {
   Real largest = 0;
   for (std::size_t i = 0; i < 3; ++i)
@@ -100,9 +100,9 @@ Real tolerance(const ProjectedTriangle& t) {
 using Polygon = raster::ClippedPolygon;
 enum class Size { moderate, any };
 
-// f(triangle, polygon) of at least `count` that need the clipper, in generated scenes. Comparisons
-// with the exact rasterizer want moderate ones: near FLT_MAX no precision tells on which side of an
-// edge a sample is.
+// Calls f(triangle, polygon) for at least `count` triangles of generated scenes that need the
+// clipper. Comparisons with the exact rasterizer need moderate coordinates: near FLT_MAX no
+// precision can tell a sample's side of an edge.
 template <class F>
 void for_each_clipped(int count, Size size, F&& f) {
   constexpr int width = kWidth, height = kHeight;
@@ -146,12 +146,13 @@ TEST(Clip, CoversWhatAnExactHomogeneousRasterizerCovers) {
           }
         }
       });
-  // The comparison saw something.
+  // The comparison was not empty.
   EXPECT_GT(polygons, share_of(2000));
   EXPECT_GT(inside, share_of(400000));
 }
 
-// No sample twice, not even on the inner edges of the fan or where snapping bends the polygon.
+// No sample is covered twice, not even on the fan's inner edges or where snapping bends the
+// polygon.
 TEST(Clip, PiecesDoNotOverlap) {
   for_each_clipped(
       share_of(20000, 200), Size::moderate,
@@ -174,13 +175,13 @@ TEST(Clip, KeepsThePositionsOfCornersThatNeedNoCut) {
                          found = found || (polygon.vertices[k].x_fx8 == v.x_fx8 &&
                                            polygon.vertices[k].y_fx8 == v.y_fx8 &&
                                            polygon.vertices[k].depth == v.depth);
-                       // A polygon of no area may be dropped whole.
+                       // A polygon without area may be dropped.
                        EXPECT_TRUE(found || polygon.size == 0) << "corner " << i;
                      }
                    });
 }
 
-// New vertices depend on their edge alone: every way to submit a triangle gives the same set.
+// New vertices depend only on their edge: every order of a triangle's corners gives the same set.
 TEST(Clip, NewVerticesDoNotDependOnTheOrderOfCorners) {
   for_each_clipped(
       share_of(20000, 200), Size::any, [&](const ProjectedTriangle& t, const Polygon& polygon) {
@@ -224,7 +225,7 @@ TEST(Clip, StaysInsideTheGuardBandUpToTheLargestCoordinates) {
   EXPECT_GT(polygons, 100);
 }
 
-// Rounding can bend the polygon of such coordinates until a plane crosses it four times.
+// Rounding can bend such polygons until a plane crosses them four times.
 TEST(Clip, NeverHasMoreCornersThanItsPolygonHolds) {
   constexpr double kKnown[][3][4] = {
       {{0x1.495a12p+4, -0x1.0b6f92p+65, 0, -0x1.e6da3cp+8},
@@ -264,9 +265,8 @@ TEST(Clip, NeverHasMoreCornersThanItsPolygonHolds) {
   }
 }
 
-// Depth is z / w, which is linear on the screen: the pieces' planes follow that of the triangle, up
-// to its slope times what snapping may move a corner, and the float32 roundings of the piece's
-// plane.
+// Depth is z / w, which is linear on the screen. The pieces' planes follow the triangle's, up to
+// its slope times the snapping of a corner, and the float32 rounding of the piece's plane.
 TEST(Clip, DepthFollowsTheTriangle) {
   int checked = 0;
   for_each_clipped(5000, Size::moderate, [&](const ProjectedTriangle& t, const Polygon& polygon) {
@@ -297,8 +297,8 @@ TEST(Clip, DepthFollowsTheTriangle) {
   EXPECT_GT(checked, 10000);
 }
 
-// Setup leaves out what lies outside of one plane without asking the clipper: of that, of
-// coordinates of all sizes, the clipper keeps nothing; and most of it is left out.
+// Setup drops triangles outside of one plane without the clipper. The clipper must keep nothing of
+// these, for coordinates of all sizes, and setup must drop most of them.
 TEST(Clip, WhatSetupLeavesOutTheClipperDoesToo) {
   using raster::kNeedsClip;
   constexpr std::uint32_t kTriangles = raster::kSetupBatch;
@@ -306,7 +306,7 @@ TEST(Clip, WhatSetupLeavesOutTheClipperDoesToo) {
   Random random(11);
   std::uint64_t left_out = 0, outside = 0, kept = 0;
   for (int batch = 0; batch < share_of(3000, 30); ++batch) {
-    // Planes of the guard band lie some 50 times as far as the picture's edge.
+    // The guard band's planes are about 50 times as far as the picture's edge.
     const double reach =
         batch % 2 == 0 ? 40 : 2;  // of exponents: from all sizes to those of scenes
     Mat4d matrix = Mat4d::identity();

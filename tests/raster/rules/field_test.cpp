@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fields with a sign against brute force: all pixels × all fields.
+// Signed fields against brute force: all pixels × all fields.
 #include <rastrum/raster/rules/field.hpp>
 
 #include <algorithm>
@@ -81,7 +81,7 @@ TEST(Field, WithoutFieldsSamplesOrNumbers) {
   const Rect view{0, 0, 64, 64};
   EXPECT_TRUE(rasterized(threads, {}, view).empty());
   EXPECT_TRUE(rasterized(threads, {{500, 500, 20, 2}, {-90, 3, 20, 2}}, view).empty());
-  // A box that holds no sample of the field, and a field that is no number.
+  // A box without a sample of its field, and a field of NaN.
   const std::vector<Blob> fields{{8, 8, 0.1F, 2}, {20, 20, 5, 2}};
   const auto nowhere = [](const Blob&, float, float) {
     return std::numeric_limits<float>::quiet_NaN();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Points and lines: the exact coverage of the library against the brute-force oracle, the rules
-// that the public conformance suites test (FACTS: dEQP and piglit), and the clipper of lines.
+// Points and lines: the library's exact coverage against the brute-force oracle, the rules of the
+// public conformance suites (dEQP and piglit), and the clipper of lines.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -37,7 +37,7 @@ ProjectedVertex vertex(std::int64_t x_fx8, std::int64_t y_fx8, float depth = 0.5
   return {static_cast<std::int32_t>(x_fx8), static_cast<std::int32_t>(y_fx8), depth, 1};
 }
 
-/// Through row_span; expects cover_8x8 and cover_blocks to say the same and the bounds to hold it.
+/// By row_span. Expects the same from cover_8x8 and cover_blocks, and that the bounds contain it.
 Pixels pixels_of(const Piece& piece, Rect view) {
   Pixels rows, blocks, walked;
   const Rect box = raster::piece_bounds(piece, view);
@@ -87,7 +87,7 @@ Pixels expected(const Shape& shape, Rect view = kView) {
   return out;
 }
 
-/// On corners, edges, centres and quarters of pixels as often as anywhere.
+/// Often on corners, edges, centres and quarters of pixels.
 std::int64_t coordinate(Random& r, int min_px, int max_px) {
   constexpr int kSteps[] = {1, 32, 64, 128, 256};
   const int step = kSteps[r.integer(0, 4)];
@@ -101,7 +101,7 @@ SnappedLine random_line(Random& r, int min_px, int max_px, int max_width) {
     v.x_fx8 = place();
     v.y_fx8 = place();
   }
-  // Short ones, axis-parallel ones and exact diagonals, too.
+  // Also short, axis-parallel and exactly diagonal lines.
   if (r.chance(0.3)) {
     l.v[1].x_fx8 = l.v[0].x_fx8 + r.integer(-384, 384);
     l.v[1].y_fx8 = l.v[0].y_fx8 + r.integer(-384, 384);
@@ -116,8 +116,8 @@ SnappedLine random_line(Random& r, int min_px, int max_px, int max_width) {
   return l;
 }
 
-/// Lines of `make(random)`, with each seed, cover what the oracle says; how many pixels, and how
-/// many cover none.
+/// Expects the oracle's coverage for lines of `make(random)`. Returns the number of pixels, and of
+/// lines without any.
 template <class Make>
 std::pair<std::size_t, std::size_t> expect_oracle(std::uint64_t all, Rect view, const Make& make) {
   std::size_t pixels = 0, empty = 0;
@@ -166,7 +166,7 @@ TEST(Lines, AreOneFragmentWideAndNearTheIdealLine) {
     const SnappedLine l = random_line(r, 60, 100, 5);
     const std::int64_t dx = l.v[1].x_fx8 - l.v[0].x_fx8, dy = l.v[1].y_fx8 - l.v[0].y_fx8;
     const bool x_major = std::abs(dx) >= std::abs(dy);
-    // Along the major axis, and across it.
+    // (along the major axis, across it)
     const auto turned = [&](const SnappedVertex& v) {
       return x_major ? std::pair(v.x_fx8, v.y_fx8) : std::pair(v.y_fx8, v.x_fx8);
     };
@@ -186,7 +186,7 @@ TEST(Lines, AreOneFragmentWideAndNearTheIdealLine) {
           256;
       ASSERT_LE(std::abs((minors.front() + minors.back() + 1) / 2.0 - ideal), 0.5 + 1e-9) << seed;
     }
-    // Every pixel along the major axis between those of the moved ends has its fragments.
+    // Every pixel along the major axis between the moved ends has its fragments.
     const auto [low, high] = std::minmax({start.first, end.first});
     for (auto m = static_cast<int>((low - 1) / 256) + 1; m < static_cast<int>((high - 1) / 256);
          ++m)
@@ -197,7 +197,7 @@ TEST(Lines, AreOneFragmentWideAndNearTheIdealLine) {
 TEST(Lines, SharedEndsLeaveNeitherGapNorDouble) {
   for (std::uint64_t seed = 0; seed < 1000; ++seed) {
     Random r(seed);
-    // A straight line cut at points that lie on it exactly, drawn forwards and backwards.
+    // A straight line cut at points exactly on it, drawn forwards and backwards.
     const int parts = r.integer(2, 6), sx = r.integer(-200, 200), sy = r.integer(-200, 200);
     const std::int64_t x = coordinate(r, 10, 30), y = coordinate(r, 10, 30);
     const int width = r.integer(1, 4);
@@ -218,7 +218,7 @@ TEST(Lines, SharedEndsLeaveNeitherGapNorDouble) {
 }
 
 TEST(Lines, AClosedPolygonOfPixelCentresHasEachCornerOnce) {
-  // Half-open lines: each of the four corners belongs to one of them.
+  // Lines are half-open: each of the four corners belongs to one.
   const std::pair<int, int> corners[] = {{10, 10}, {30, 14}, {26, 33}, {5, 28}};
   std::map<std::pair<int, int>, int> times;
   for (int i = 0; i < 4; ++i) {
@@ -231,7 +231,7 @@ TEST(Lines, AClosedPolygonOfPixelCentresHasEachCornerOnce) {
 }
 
 TEST(Lines, AHorizontalLineBetweenRowsIsDrawnInTheUpperOne) {
-  // As the top-left rule has it for the samples of an edge.
+  // Like the top-left rule for samples on an edge.
   const Pixels row = drawn({{{5 * 256 + 128, 9 * 256}, {9 * 256 + 128, 9 * 256}}});
   EXPECT_EQ(row, (Pixels{{5, 8}, {6, 8}, {7, 8}, {8, 8}}));
   const Pixels column = drawn({{{9 * 256, 5 * 256 + 128}, {9 * 256, 8 * 256 + 128}}});
@@ -265,7 +265,7 @@ TEST(Points, AreSquaresUnderTheTopLeftRule) {
   EXPECT_GT(pixels, 25 * all);
 }
 
-/// The ends of a line inside of the near plane and the guard band, in long double by halving.
+/// The ends of a line inside of the near plane and the guard band, by bisection in long double.
 struct Ends {
   long double x[2], y[2], z[2];
 };
@@ -297,7 +297,7 @@ TEST(ClipLine, EqualsHalvingInLongDouble) {
     const bool whole[2] = {v[0].x_fx8 != raster::kNeedsClip, v[1].x_fx8 != raster::kNeedsClip};
     if (whole[0] && whole[1]) continue;
     ++clipped;
-    // An inside point on the line, if there is one: its inside is an interval.
+    // A point of the line that is inside, if any: the inside is an interval.
     long double t_in = -1;
     if (whole[0]) t_in = 0;
     if (whole[1]) t_in = 1;
@@ -305,7 +305,7 @@ TEST(ClipLine, EqualsHalvingInLongDouble) {
       if (inside(c[0], c[1], i / 20000.0L, kSize / 2)) t_in = i / 20000.0L;
     ProjectedVertex out[2] = {v[0], v[1]};
     const bool any = raster::clip_line(c, out, viewport);
-    if (t_in < 0) {  // an interval below the steps may have escaped
+    if (t_in < 0) {  // an interval shorter than the steps may be missed
       gone += !any;
       continue;
     }
@@ -330,7 +330,7 @@ TEST(ClipLine, EqualsHalvingInLongDouble) {
       EXPECT_NEAR(static_cast<double>(y), out[i].y_fx8 / 256.0, 1 / 256.0) << seed;
       EXPECT_NEAR(static_cast<double>(0.5L / w), out[i].depth, 1e-5) << seed;
     }
-    // Backwards the same ends.
+    // The reversed line has the same ends.
     const raster::Vec4d back[2] = {c[1], c[0]};
     ProjectedVertex reverse[2] = {v[1], v[0]};
     ASSERT_TRUE(raster::clip_line(back, reverse, viewport));

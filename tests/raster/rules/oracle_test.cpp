@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The oracle itself, against cases worked out by hand: an oracle that nobody checks proves nothing.
+// The oracle against cases worked out by hand.
 #include "tests/support/oracle.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ SnappedTriangle px_triangle(std::array<double, 6> xy, std::array<float, 3> depth
   return t;
 }
 
-/// Alone, in 8 × 8 pixels.
+/// One triangle in 8 × 8 pixels.
 OracleImage drawn(const SnappedTriangle& t, Keep keep = Keep::all) {
   return brute_force(8, 8, std::array{t}, keep);
 }
@@ -35,12 +35,12 @@ std::vector<int> row_counts(const OracleImage& image) {
   return counts;
 }
 
-// The corners lie on the samples (0.5, 0.5), (4.5, 0.5) and (0.5, 4.5): the left and the top edge
+// The corners lie on the samples (0.5, 0.5), (4.5, 0.5) and (0.5, 4.5). The left and the top edge
 // own their samples, the diagonal does not.
 TEST(Oracle, TopLeftRule) {
   const SnappedTriangle t = px_triangle({0.5, 0.5, 4.5, 0.5, 0.5, 4.5});
   EXPECT_EQ(row_counts(drawn(t)), (std::vector<int>{4, 3, 2, 1, 0, 0, 0, 0}));
-  // The other half of the square owns the diagonal, and neither its right nor its bottom edge.
+  // The square's other half owns the diagonal, but neither its right nor its bottom edge.
   const SnappedTriangle u = px_triangle({4.5, 0.5, 4.5, 4.5, 0.5, 4.5});
   EXPECT_EQ(row_counts(drawn(u)), (std::vector<int>{0, 1, 2, 3, 0, 0, 0, 0}));
 }
@@ -57,8 +57,8 @@ TEST(Oracle, WindingChangesNothingButTheSide) {
 }
 
 TEST(Oracle, ExactAtTheEndsOfTheGuardBand) {
-  // The hypotenuse from (−2¹⁵, 2¹⁶) to (2¹⁶, −2¹⁵) is x + y = 2¹⁵: no sample of an 8 × 8 image is
-  // near it, and the two triangles lie on its two sides.
+  // The hypotenuse from (−2¹⁵, 2¹⁶) to (2¹⁶, −2¹⁵) is x + y = 2¹⁵. No sample of an 8 × 8 image is
+  // near it, and the two triangles are on opposite sides.
   const SnappedTriangle low = px_triangle({-32768, -32768, 65536, -32768, -32768, 65536});
   const SnappedTriangle high = px_triangle({65536, 65536, 65536, -32768, -32768, 65536});
   EXPECT_EQ(drawn(low).fragments(), 64U);

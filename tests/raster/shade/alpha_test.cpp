@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where alpha comes from, with every shader: opacity, materials, textures, vertex colours; and how
-// a translucent picture is stored. The expected colours are written out again here in float64.
+// The sources of alpha with every shader: opacity, materials, textures, vertex colours; and how a
+// translucent picture is stored. The expected colours are computed again in float64.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -40,12 +40,12 @@ Frame frame_of(const RenderOptions& o, const Scene& scene) {
   return draw(o, scene, pixel_camera(kSize, kSize));
 }
 
-/// A coloured quad; what is drawn of it depends on the materials.
+/// A coloured quad; the materials decide what is drawn.
 Scene quad_scene(double depth = 0.5) {
   return single(quad(kSize, {0, 0}, {1, 1}, depth));
 }
 
-/// The display value of a surface with `alpha` over the background's, in the light of the shader.
+/// The display value of a surface with `alpha` over the background, blended in the shader's light.
 double over(double front, double alpha, double back, double back_alpha, bool linear) {
   if (linear) front = light_of(front), back = light_of(back);
   const double a = alpha + back_alpha * (1 - alpha);
@@ -59,12 +59,13 @@ Vec4 straight(const Frame& frame, int x, int y) {
   return {c.x / c.w, c.y / c.w, c.z / c.w, c.w};
 }
 
-/// On every instruction set and on the serial device. Returns the first.
+/// Draws on every instruction set and on the serial device, expects equal frames, and returns the
+/// first.
 Frame frame_of_all(const RenderOptions& o, const Scene& scene) {
   return EveryWay(o).same([&](const RenderOptions& by) { return frame_of(by, scene); });
 }
 
-/// All pixels of `frame` are those of `opaque` with `alpha` over the background.
+/// Expects that all pixels of `frame` are `opaque`'s with `alpha` over the background.
 void expect_over(const Frame& frame, const Frame& opaque, double alpha, const RenderOptions& o) {
   const Vec4 b = o.background;
   const bool linear = o.shader == Shader::material;
@@ -73,7 +74,7 @@ void expect_over(const Frame& frame, const Frame& opaque, double alpha, const Re
       const Vec4 front = opaque.color(x, y), got = straight(frame, x, y);
       ASSERT_EQ(front.w, 1);
       ASSERT_NEAR(got.w, alpha + b.w * (1 - alpha), 1e-6);
-      // The curve of the transfer is good to 3.2e-5, and was inverted exactly.
+      // The transfer function is accurate to 3.2e-5; its inverse here is exact.
       const double tolerance = linear ? 3e-4 : 1e-6;
       ASSERT_NEAR(got.x, over(front.x, alpha, b.x, b.w, linear), tolerance) << x << ", " << y;
       ASSERT_NEAR(got.y, over(front.y, alpha, b.y, b.w, linear), tolerance) << x << ", " << y;
@@ -102,7 +103,7 @@ TEST_P(EveryShader, OpacityIsBlendedOverTheBackground) {
   EXPECT_TRUE(std::ranges::equal(unblended.color8.pixels(), opaque.color8.pixels()));
 }
 
-/// OPAQUE, MASK and BLEND at once: the materials of a mesh's two triangles, and alpha's factors.
+/// OPAQUE, MASK and BLEND at once, on a mesh's two triangles, with alpha's factors.
 TEST_P(EveryShader, EachMaterialHasItsAlpha) {
   const float own = 0.7F * (204 / 255.0F) * 0.9F * (51 / 255.0F);
   const auto scene_with = [&](AlphaMode first, AlphaMode second, float cutoff) {
@@ -167,7 +168,7 @@ TEST_P(EveryShader, OpaqueSurfacesKeepTheirBitsBesideTranslucentOnes) {
 std::vector<Shader> blending_shaders() {
   std::vector<Shader> shaders;
   for (const std::string_view n : shader_names())
-    if (n != "depth" && n != "auto")  // which is one of the others
+    if (n != "depth" && n != "auto")  // "auto" is one of the others
       shaders.push_back(shader_from_name(n));
   return shaders;
 }
@@ -194,7 +195,7 @@ TEST(Alpha, VertexColoursOfScenesWithoutMaterialsBlend) {
                       over(front, alpha, 0.2F, 0.5, shader == Shader::material), 3e-4);
         }
     }
-    // A material says whether vertex alpha is meant.
+    // A material decides whether vertex alpha counts.
     scene.materials.emplace_back();
     EXPECT_EQ(frame_of(options(shader), scene).stats.visibility, "atomic");
   }
@@ -243,7 +244,7 @@ TEST(Alpha, LayersBlendFrontToBackInTheLightOfTheShader) {
     const RenderOptions o = options(shader);
     const Frame frame = frame_of(o, scene);
     const bool linear = shader == Shader::material;
-    // Textures are the material shader's alone.
+    // Only the material shader uses textures.
     const double front = linear ? 230 / 255.0 : 1, middle = display(0.1);
     const double behind = over(middle, 0.7, 0.2, 0.5, linear);
     const double behind_alpha = 0.7 + 0.5 * 0.3;
@@ -262,7 +263,7 @@ TEST(Alpha, TheDepthPictureIsOfTheNearestSurfaceWhateverItsOpacity) {
   EXPECT_TRUE(std::ranges::equal(frame.color8.pixels(), opaque.color8.pixels()));
 }
 
-/// A user's shader that returns alpha, over draws that say they are translucent.
+/// A user's shader returns alpha, and its draws are marked translucent.
 TEST(Alpha, UsersShadersBlendByTheirOwn) {
   const Mesh mesh = quad(kSize, {0, 0}, {1, 1});
   const raster::FragmentShader shader([](const raster::FrameGeometry&, const Fragment&) {
@@ -280,7 +281,7 @@ TEST(Alpha, UsersShadersBlendByTheirOwn) {
     Painter renderer(o);
     const Frame frame = draw(renderer, twice, shader, nullptr);
     for (const Vec4 c : frame.color.pixels()) ASSERT_EQ(c, (Vec4{0.375F, 0, 0.75F, 0.75F}));
-    // By material, of one triangle alone.
+    // By material, for one triangle only.
     const std::vector<std::uint32_t> flags{0, kTranslucent}, materials{0, 1};
     twice[1].flags = 0;
     twice[1].face_materials = materials;
@@ -288,7 +289,7 @@ TEST(Alpha, UsersShadersBlendByTheirOwn) {
     const Frame half = draw(renderer, twice, shader, nullptr);
     EXPECT_EQ(half.color(20, 5), (Vec4{0.375F, 0, 0.75F, 0.75F}));
     EXPECT_EQ(half.color(4, 20), (Vec4{0.375F, 0, 0.75F, 0.75F}));
-    // Drawn opaque where nothing shall blend, micro fragments included.
+    // Drawn opaque if nothing may blend, micro fragments included.
     o.transparency.method = Transparency::none;
     Painter none(o);
     const Frame front = draw(none, twice, shader, nullptr);
@@ -344,7 +345,7 @@ TEST(Alpha, PassesThatLoadDoNotBlend) {
                Error);
 }
 
-/// Every instruction set gives the bits of the plain loop, whatever the colours are.
+/// Every instruction set has the bits of the plain loop, for any colours.
 TEST(StoreBlended, IsTheScalarOne) {
   Random random(3);
   constexpr float kOdd[] = {0,   -0.0F, 1,     0.5F, 1e-30F,   1e-45F,    NAN,        -1,

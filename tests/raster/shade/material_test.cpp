@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Materials: textures, filtering, alpha masks and the lighting formula, each against its definition
-// written out again here.
+// Materials: textures, filtering, alpha masks and the lighting formula, each against a second
+// version of its definition.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -92,7 +92,7 @@ TEST(Srgb, CodesAreTheNearest) {
 }
 
 TEST(Material, CodesOfDataAreExact) {
-  // Lanes decode them without the table.
+  // SIMD lanes decode them without the table.
   for (std::size_t i = 0; i < 256; ++i) {
     const auto code = static_cast<float>(i);
     EXPECT_EQ(code * raster::kOf256 + code * raster::kOf65280, raster::decode_tables().unorm[i])
@@ -201,7 +201,7 @@ TEST(Material, AMinifiedCheckerboardIsItsMeanInLinearLight) {
     const Image<Rgba8> picture = draw_texture(checkerboard(size));
     for (const Rgba8 p : picture.pixels()) ASSERT_EQ(p, grey(188)) << size;
   }
-  // One texel a pixel is no minification, and no mip chain gives no mean.
+  // One texel a pixel is not minified, so the mip levels do not average it.
   const Image<Rgba8> same = draw_texture(checkerboard(kSize));
   for (int x = 0; x < kSize; ++x) ASSERT_EQ(same(x, 3), grey(x % 2 == 1 ? 0 : 255));
   Texture plain = checkerboard(4 * kSize);
@@ -221,7 +221,7 @@ TEST(Material, TheLongerAxisOfTheFootprintChoosesTheLevel) {
 }
 
 TEST(Material, TrilinearBlendsLevelsByTheLog) {
-  // A step between black and white is a ramp of one texel's width on each level.
+  // A step between black and white becomes a ramp of one texel's width on each level.
   Texture t = texture(128, 128, [](int x, int) { return grey(x < 64 ? 0 : 255); });
   t.wrap_u = t.wrap_v = Wrap::clamp_to_edge;
   const float span = std::sqrt(2.0F) / 2;  // 128 · span texels over 64 px: √2 a pixel, level 1/2
@@ -278,7 +278,7 @@ TEST(TextureSet, ChainsAreKeptUntilTheirTextureChanges) {
   EXPECT_GE(memory.peak(), (16 * 16 + 2 * 8 * 8) * sizeof(Rgba8));
   set.update(textures, uses, nullptr);
   EXPECT_EQ(set.builds(), 3U);
-  for (Rgba8& p : textures[0].image.pixels()) p = grey(3);  // same address, same size
+  for (Rgba8& p : textures[0].image.pixels()) p = grey(3);  // same address and size
   set.update(textures, uses, nullptr);
   EXPECT_EQ(set.builds(), 4U);
   EXPECT_EQ(set.find(0, raster::TexelUse::color)->level[3].texels[0], grey(3));
@@ -291,7 +291,7 @@ TEST(TextureSet, ChainsAreKeptUntilTheirTextureChanges) {
   EXPECT_EQ(set.find(0, raster::TexelUse::color), nullptr);
 }
 
-/// A masked quad before a plain one; the mask's holes are `is_hole`.
+/// A masked quad in front of a plain one; the mask has holes at `is_hole`.
 Scene masked(const auto& is_hole) {
   Texture t = texture(kSize, kSize, [&](int x, int y) {
     return Rgba8{200, 10, 10, static_cast<std::uint8_t>(is_hole(x, y) ? 127 : 128)};
@@ -414,7 +414,7 @@ TEST(Material, MetallicAndRoughnessComeFromBlueAndGreen) {
   EXPECT_NEAR(draw_quad(scene).color8(3, 3).r, exact, 0.52);
 }
 
-/// The colour of a quad whose normal map holds `texel`, or whose vertices hold `normal`.
+/// The colour of a quad whose normal map is `texel`, or whose vertices have `normal`.
 Rgba8 bumped(Rgba8 texel, Vec2 low, Vec2 high) {
   Scene scene = surface({.normal_texture = 0}, low, high);
   scene.textures.push_back(one_texel(texel));
@@ -432,11 +432,11 @@ void expect_near(Rgba8 a, Rgba8 b) {
 }
 
 TEST(Material, NormalMapsGoRightAndUpInTheirPicture) {
-  // 204 stands for 0.6, 230 for 0.804, 127.5 for 0.
+  // 204 means 0.6, 230 means 0.804, 127.5 means 0.
   const Rgba8 right{204, 128, 230, 255}, up{128, 204, 230, 255};
   expect_near(bumped(right, {0, 0}, {1, 1}), tilted({0.6F, 0.004F, 0.804F}));
   expect_near(bumped(up, {0, 0}, {1, 1}), tilted({0.004F, 0.6F, 0.804F}));
-  // A picture that is mirrored or upside down takes its bumps along.
+  // Mirrored texture coordinates mirror the bumps too.
   expect_near(bumped(right, {1, 0}, {0, 1}), tilted({-0.6F, 0.004F, 0.804F}));
   expect_near(bumped(up, {1, 0}, {0, 1}), tilted({-0.004F, 0.6F, 0.804F}));
   expect_near(bumped(up, {0, 1}, {1, 0}), tilted({0.004F, -0.6F, 0.804F}));
@@ -493,8 +493,8 @@ TEST(Material, TheSameBitsEverywhere) {
   }
 }
 
-// Triangles of a pixel or two, which a bin sets up once for all of its blocks: with and without
-// normals, colours and textures, of many materials or of one, clipped, and instances.
+// Triangles of a pixel or two, which a bin sets up once for all blocks: with and without normals,
+// colours and textures, of one material or many, clipped, and in instances.
 TEST(Material, SmallTrianglesAreTheSameBits) {
   Scene scene = everything();
   for (Material& m : scene.materials) m.normal_texture = kNoTexture;  // those go by blocks
@@ -539,8 +539,8 @@ TEST(Material, SmallTrianglesAreTheSameBits) {
 }
 
 TEST(Material, ATriangleIsShadedAloneAsAmongOthers) {
-  // Pictures of each triangle by itself agree with the whole one wherever it is seen: neither the
-  // lanes beside it nor the order of work reach into a fragment.
+  // A picture of each triangle alone agrees with the whole one where it is visible: neither
+  // neighbouring lanes nor the order of work affect a fragment.
   Scene whole = everything();
   whole.meshes[0].indices.resize(3 * 40);
   whole.meshes[0].face_materials.resize(40);

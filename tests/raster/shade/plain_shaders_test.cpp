@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The plain shaders over materials: their base colour is the material's, as a display value. And
-// Shader::automatic, which takes `material` where there are some.
+// The plain shaders with materials: their base colour is the material's, as a display value. Also
+// Shader::automatic, which takes `material` if there are materials.
 #include <cstdint>
 
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ Vec4 display_of(Vec4 base) {
           raster::srgb_from_linear(base.z), 1};
 }
 
-/// The mesh's vertices in colours, as `alpha` of their numbers says.
+/// Colours the mesh's vertices, with `alpha` of their numbers.
 void paint(Mesh& mesh, const auto& alpha) {
   for (std::uint32_t i = 0; i < mesh.positions.size(); ++i)
     mesh.colors.values.push_back({0.1F * static_cast<float>(i % 10), 0.5F, 1, alpha(i)});
@@ -55,7 +55,7 @@ TEST(PlainShaders, HaveTheMaterialsColor) {
   }
 }
 
-/// A material's colour is that of a mesh without materials, with vertex colours that say the same.
+/// A material's colour equals that of a mesh without materials but with such vertex colours.
 TEST(PlainShaders, ShadeAMaterialAsVertexColors) {
   for (const bool has_colors : {false, true}) {
     Scene with, without;
@@ -85,7 +85,7 @@ TEST(PlainShaders, ShadeAMaterialAsVertexColors) {
   }
 }
 
-/// A mesh without materials looks the same beside one, here out of sight, that has some.
+/// A mesh without materials does not change beside one, out of sight, that has materials.
 TEST(PlainShaders, HaveTheirOwnColorBesideMaterials) {
   for (const bool has_colors : {false, true}) {
     Scene alone = single(shapes::sphere(12, 24));
@@ -102,15 +102,15 @@ TEST(PlainShaders, HaveTheirOwnColorBesideMaterials) {
       const Frame expected = draw(options(shader), alone, camera);
       ASSERT_GT(expected.stats.pixels_covered, 500U);
       for (const Scene* scene : {&before, &behind})
-        // The base colour goes by linear light and back there.
+        // The base colour is converted to linear light and back there.
         ASSERT_TRUE(same_picture(draw(options(shader), *scene, camera), expected, 1))
             << name(shader) << ", " << has_colors;
     }
   }
 }
 
-/// Lanes of every instruction set against plain C++, in float32: triangles that the near plane
-/// cuts, colours of vertices and of copies, widths that are no multiple of the lanes, several
+/// SIMD lanes of every instruction set equal plain C++, in float32: triangles cut by the near
+/// plane, colours of vertices and copies, widths that are not a multiple of the lanes, several
 /// samples.
 TEST(PlainShaders, OfIdsLinesAndDepthsAreTheSameBitsInLanes) {
   Scene scene{.meshes = {shapes::torus_knot(2, 3, 40, 7), shapes::sphere(5, 9),
@@ -124,7 +124,7 @@ TEST(PlainShaders, OfIdsLinesAndDepthsAreTheSameBitsInLanes) {
   }
   const SceneBinding binding(scene);
   Camera camera = fit_camera(binding.view(), 1, false);
-  camera.eye = camera.target + (camera.eye - camera.target) * 0.5;  // to the edges of the picture
+  camera.eye = camera.target + (camera.eye - camera.target) * 0.5;  // beyond the edges
   for (const bool cuts : {false, true}) {
     if (cuts) camera.near_plane = static_cast<float>(length(camera.target - camera.eye));
     for (const Shader shader : {Shader::id, Shader::wireframe, Shader::depth})

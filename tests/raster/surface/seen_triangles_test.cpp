@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Blocks of pixels and the triangles that they see (surface/, and shade/lit_seen-inl.hpp and
-// material_seen-inl.hpp): lanes give the colours of the scalar form, whatever the ids, however many
-// triangles and materials a block sees, and whatever their normals and textures are.
+// Blocks of pixels and their visible triangles (surface/, shade/lit_seen-inl.hpp and
+// material_seen-inl.hpp): SIMD lanes give the colours of the scalar form, for any ids, numbers of
+// triangles and materials in a block, normals and textures.
 #include <array>
 #include <cstdint>
 #include <initializer_list>
@@ -21,8 +21,8 @@ namespace {
 
 constexpr int kSize = 24;
 
-/// Squares of `cell` px over the whole picture, two triangles each, whose ids are `apart` from one
-/// another: what lies between them is nowhere. Every other square is in the second mesh.
+/// Squares of `cell` px over the whole picture, two triangles each, with ids that differ by
+/// `apart`; the triangles between are out of sight. Every other square is in the second mesh.
 std::array<Mesh, 2> squares(int cell, std::uint32_t apart, bool indexed, bool colored,
                             std::uint64_t seed) {
   Random random(seed);
@@ -52,11 +52,11 @@ std::array<Mesh, 2> squares(int cell, std::uint32_t apart, bool indexed, bool co
       mesh.indices.insert(mesh.indices.end(), t.begin(), t.end());
       mesh.indices.resize(mesh.indices.size() + std::size_t{3} * (apart - 1), 0);
     }
-    // Few, so that the last one, which lies at the end of its array, is met often.
+    // So few that the last one, at the end of its array, is used often.
     const std::size_t normals = indexed ? 13 : mesh.positions.size();
     for (std::size_t i = 0; i < normals; ++i)
       mesh.normals.values.push_back({number(), number(), number()});
-    // Their squares are no float32, or they are no numbers.
+    // Their squares overflow float32, or they are NaN.
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
     for (const Vec3 n : {Vec3{0, 1e-20F, 2e-20F}, Vec3{1e30F, -2e30F, 3e30F}, Vec3{0, 0, 0},
@@ -72,8 +72,8 @@ std::array<Mesh, 2> squares(int cell, std::uint32_t apart, bool indexed, bool co
   return meshes;
 }
 
-/// Float colours and 8-bit ones, each drawn by itself: opaque ones become 8 bits where they are
-/// lit. The same for all ways to draw.
+/// Float and 8-bit colours, drawn separately, because opaque lit colours become 8 bits at once. All
+/// ways to draw must agree.
 Frame colors_by_all(const RenderOptions& options, const SceneView& scene, const Camera& camera,
                     std::initializer_list<RendererOptions> hows = {{.threads = 1}}) {
   return EveryWay(options, hows).same([&](const RenderOptions& o) {
@@ -89,7 +89,7 @@ void expect_drawn(const Frame& f) {
   EXPECT_GT(f.color8(3, 4).a, 0);
 }
 
-/// How many neighbours of a row have different colours.
+/// The number of neighbours in a row with different colours.
 int differing(const Frame& f) {
   int n = 0;
   for (int i = 1; i < f.color.width(); ++i) n += f.color(i, 9) != f.color(i - 1, 9) ? 1 : 0;
@@ -113,7 +113,7 @@ KeptInstances placed(const std::array<Mesh, 2>& meshes, const Mat4d& place) {
 }
 
 const Camera kFlat{.matrix = Mat4d::identity()};
-/// In which weights are perspective.
+/// A camera for which weights are perspective.
 Camera deep() {
   Camera camera = kFlat;
   camera.matrix->m[3][2] = 0.5;
@@ -139,14 +139,14 @@ TEST(SeenTriangles, HaveTheColoursOfTheScalarForm) {
         }
 }
 
-// Without normals they have those of their planes, from positions and indices of whatever type,
-// also where one block sees all of these.
+// Without normals they have their planes' normals, from positions and indices of any type, also if
+// one block sees all types.
 TEST(SeenTriangles, HaveTheNormalsOfTheirPlanes) {
   for (const int cell : {1, 2, 3, 8}) {
     std::array<Mesh, 2> meshes = squares(cell, 1, false, false, 40 + static_cast<unsigned>(cell));
     for (Mesh& mesh : meshes) mesh.normals = {};
-    // One third of the second mesh's triangles have float64 and int64 arrays, one third have no
-    // indices, one third have int16 indices.
+    // A third of the second mesh's triangles have float64 and int64 arrays, a third no indices, a
+    // third int16 indices.
     MeshView narrow = meshes[0].view();
     std::vector<double> wide;
     for (const Vec3 p : meshes[1].positions) wide.insert(wide.end(), {p.x, p.y, p.z, -9});
@@ -181,8 +181,8 @@ TEST(SeenTriangles, HaveTheNormalsOfTheirPlanes) {
   }
 }
 
-/// Triangles of few pixels over most of a picture, `apart` px from one another, and long ones
-/// before them, so thin that float32 is too little for their weights.
+/// Triangles of few pixels, `apart` px from each other, over most of a picture. In front are long
+/// ones, too thin for float32 weights.
 Mesh crumbs(int width, int height, int apart, bool colored, std::uint64_t seed) {
   Random random(seed);
   const auto number = [&](double a, double b) { return static_cast<float>(random.real(a, b)); };
@@ -210,13 +210,13 @@ Mesh crumbs(int width, int height, int apart, bool colored, std::uint64_t seed) 
 }
 
 TEST(SeenTriangles, OfABinHaveTheColoursOfTheScalarForm) {
-  constexpr int kWidth = 150, kHeight = 90;  // bins that the picture cuts
+  constexpr int kWidth = 150, kHeight = 90;  // the picture cuts bins
   std::uint64_t seed = 1;
   int different = 0;
   for (const bool colored : {false, true})
     for (const Shader shader : {Shader::flat, Shader::normal, Shader::lambert, Shader::phong})
       for (const bool lit : {false, true}) {
-        // 1 px apart a bin sees more triangles than are set up at once.
+        // At 1 px apart, a bin sees more triangles than are set up at once.
         const Mesh mesh = crumbs(kWidth, kHeight, lit ? 1 : 2, colored, ++seed);
         const OneInstance instance(mesh.view());
         RenderOptions o({.width = kWidth,
@@ -295,7 +295,7 @@ TEST(SeenTriangles, HaveTheMaterialsOfTheScalarForm) {
           for (Mesh& mesh : meshes) {
             const auto coordinate = [&] { return static_cast<float>(random.real(-2, 3)); };
             const std::size_t count = indexed ? 29 : mesh.positions.size();
-            // The second mesh has none in every other scene.
+            // In every other scene the second mesh has none.
             if (&mesh == &meshes[0] || seed % 2 == 0)
               for (std::size_t i = 0; i < count; ++i)
                 mesh.texcoords.values.push_back({coordinate(), coordinate()});
