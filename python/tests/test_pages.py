@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The Python of README.md, docs/python.md, docs/coming_from.md and docs/tour.ipynb runs, and shows what is there."""
+"""The Python of README.md, docs/python.md, docs/coming_from.md, docs/python_tools.md and docs/tour.ipynb runs."""
 
 import json
 import pathlib
@@ -91,6 +91,69 @@ def test_every_block_runs(tmp_path, monkeypatch):
     assert (tmp_path / "points.png").stat().st_size > 1000
     assert names["mask"].any(axis=(1, 2)).all() and len(names["points"]) > 1000
     assert isinstance(names["p"], rr.Pictures)
+
+
+def block_of_tool(tool):
+    """The one block of a tool's section in python_tools.md."""
+    if not (DOCS / "python_tools.md").exists():
+        pytest.skip("the pages are not beside the tests")
+    sections = re.split(r"^## (.*)\n", (DOCS / "python_tools.md").read_text(encoding="utf-8"), flags=re.M)
+    blocks = {name: re.findall(r"^```python\n(.*?)^```", text, re.M | re.S) for name, text in zip(sections[1::2], sections[2::2])}
+    assert {name for name, found in blocks.items() if found} == {"PyVista", "Jupyter", "matplotlib", "trimesh", "pytest"}
+    block, = blocks[tool]
+    return block
+
+
+def test_the_block_of_pyvista_runs(tmp_path, monkeypatch):
+    block = block_of_tool("PyVista")
+    pv = pytest.importorskip("pyvista")
+    import rastrum.pyvista_plugin  # noqa: F401  where no wheel is installed there are no entry points
+    plotter = pv.Plotter(off_screen=True, window_size=(160, 120))
+    plotter.add_mesh(pv.Sphere())
+    monkeypatch.chdir(tmp_path)
+    run_blocks("python_tools.md", [block], {"mesh": pv.Sphere(), "plotter": plotter})
+    assert (tmp_path / "p.png").stat().st_size > 300
+
+
+def test_the_block_of_jupyter_runs():
+    block = block_of_tool("Jupyter")
+    pytest.importorskip("anywidget")
+    names = {"rr": rr, "scene": ball()}
+    run_blocks("python_tools.md", [block], names)
+    assert names["seen"].color.std() > 10
+
+
+def test_the_block_of_matplotlib_runs(tmp_path):
+    block = block_of_tool("matplotlib")
+    pytest.importorskip("matplotlib").use("Agg")
+    from matplotlib import pyplot
+    names = {"rr": rr, "pyplot": pyplot, "things": ball()}
+    run_blocks("python_tools.md", [block], names)
+    names["ax"].figure.savefig(tmp_path / "shown.png")
+    shown = pyplot.imread(tmp_path / "shown.png")
+    names["ax"].clear()
+    names["ax"].figure.savefig(tmp_path / "empty.png")
+    pyplot.close(names["ax"].figure)
+    assert (pyplot.imread(tmp_path / "empty.png") != shown).any(-1).sum() > 1000
+
+
+def test_the_block_of_trimesh_runs():
+    block = block_of_tool("trimesh")
+    trimesh = pytest.importorskip("trimesh")
+    names = {"rr": rr, "scene": trimesh.Scene(trimesh.Trimesh(*ball(), process=False))}
+    run_blocks("python_tools.md", [block], names)
+    assert names["picture"].color.std() > 10
+
+
+def test_the_block_of_pytest_runs(tmp_path, monkeypatch):
+    names, taken = {"rr": rr}, []
+    run_blocks("python_tools.md", [block_of_tool("pytest")], names)
+    (tmp_path / "part.stl").write_text(
+        "solid part\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\nendsolid part\n")
+    monkeypatch.chdir(tmp_path)
+    names["test_part"](lambda picture, name: taken.append((picture, name)))  # test_plugins.py tests the fixture itself
+    (picture, name), = taken
+    assert name == "part" and picture.color[..., 3].any()
 
 
 def test_the_block_of_the_readme_runs(tmp_path, monkeypatch):
