@@ -255,12 +255,11 @@ std::int32_t Materials::load_texture(std::size_t index) {
   const auto webp = t.extension(kWebp);
   if (webp && has_webp()) source = webp->get("source");
   if (!source) {
-    const char* const why =
-        webp ? "is of EXT_texture_webp, for which this rastrum was built "
-               "without libwebp (Debian: libwebp-dev)"
-        : t.extension(kBasisu)
-            ? "is of KHR_texture_basisu, which no library that is used here reads"
-            : "has no source that is read here";
+    const char* const why = webp ? "needs EXT_texture_webp, but this rastrum was built without "
+                                   "libwebp (Debian: libwebp-dev)"
+                            : t.extension(kBasisu)
+                                ? "needs KHR_texture_basisu, which is not read here"
+                                : "has no source that is read here";
     scene_.warnings.push_back(t.path() + " " + why + "; drawn without it");
     return kNoTexture;
   }

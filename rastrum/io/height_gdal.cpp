@@ -176,9 +176,10 @@ HeightGrid read_height_gdal(const std::filesystem::path& file, const ReadOptions
 #else
 
 HeightGrid read_height_gdal(const std::filesystem::path& file, const ReadOptions&) {
-  throw Error(Errc::unsupported, file.string() +
-                                     ": GeoTIFF needs GDAL, which was not there when rastrum was "
-                                     "built (Debian: libgdal-dev)");
+  throw Error(
+      Errc::unsupported,
+      file.string() +
+          ": GeoTIFF needs GDAL, but this rastrum was built without it (Debian: libgdal-dev)");
 }
 
 #endif

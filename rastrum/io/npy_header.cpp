@@ -136,8 +136,8 @@ NpyTriangles parse_npy_triangles(Bytes bytes, const std::string& name) {
            "'rastrum terrain --height'");
   const std::string type = header.type.substr(1);
   if (type != "f4" && type != "f8")
-    refuse("its numbers are of type " + quoted(std::string_view(header.type)) +
-           ", and corners of triangles are read of float32 ('<f4') or float64 ('<f8')");
+    refuse("its numbers have type " + quoted(std::string_view(header.type)) +
+           ", but corners of triangles must be float32 ('<f4') or float64 ('<f8')");
   if (header.type[0] != '<')
     refuse("its numbers of type " + quoted(std::string_view(header.type)) +
            " are not little-endian; save array.astype('<" + type + "')");

@@ -55,10 +55,10 @@ bool has_webp() {
 }
 
 Image<Rgba8> decode_webp(Bytes, const std::string& name, Budget&) {
-  throw Error(Errc::unsupported,
-              name +
-                  ": is a WebP picture, for which this rastrum was built without libwebp "
-                  "(Debian: libwebp-dev)");
+  throw Error(
+      Errc::unsupported,
+      name +
+          ": is a WebP picture, but this rastrum was built without libwebp (Debian: libwebp-dev)");
 }
 
 #endif

@@ -232,9 +232,9 @@ std::string why_not_on_device(const SceneView& scene) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const InstanceView& instance = scene.instances[i];
     if (shows_scalars(scene, instance))
-      return text_of("instance ", i, " shows scalars, which are the CPU's to colour");
+      return text_of("instance ", i, " shows scalars, which only the CPU colours");
     if (is_points_or_lines(instance.geometry))
-      return text_of("instance ", i, " is of points or lines, which are the CPU's");
+      return text_of("instance ", i, " has points or lines, which only the CPU draws");
     if (instance.mesh() == nullptr) continue;
     const MeshView& m = *instance.mesh();
     const auto say = [&](const char* what) {

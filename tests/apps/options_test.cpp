@@ -116,7 +116,7 @@ TEST_F(Options, ViewsByNameAndAngle) {
        {std::pair{"--view above", "expected front, back, left, right, top, bottom, iso"},
         {"--elevation 91", "looks straight down or up"},
         {"--zoom 0", "must be greater than 0"},
-        {"--view top --eye 1,2,3", "--view: turns the camera that sees everything"}})
+        {"--view top --eye 1,2,3", "--view: turns the camera of --fit"}})
     refused(Args("render --look plain builtin:boxes -o q.png") + options, says);
 }
 

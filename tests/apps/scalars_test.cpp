@@ -103,15 +103,15 @@ TEST_F(Scalars, RefuseWhatCannotBeMeant) {
   refused("--cmap viridis", "say which, as in --scalars z");
   refused("--log", "--log");
   refused("--scalars z --cmap vridis", "there are, each also with _r for its reverse");
-  refused("--scalars z --range 2,1", "upside down");
+  refused("--scalars z --range 2,1", "must not be above the second");
   refused("--scalars z --range 2", "LOW,HIGH");
   refused("--scalars z --range nan,1", "--range");
   refused("--scalars z --log --range -1,1", "must lie above 0");
   refused("--scalars z --scalar-opacity 1:0,0:1", "must rise");
   refused("--scalars z --scalar-opacity 1", "VALUE:OPACITY");
-  refused("--scalars z --bar-unit m", "is for --bar");
+  refused("--scalars z --bar-unit m", "needs --bar");
   refused("--scalars z --scalar-opacity 0:2", "--scalar-opacity: [0]");
-  refused("--scalars z --isoline-width 3", "--isoline-width: is for --isolines");
+  refused("--scalars z --isoline-width 3", "--isoline-width: needs --isolines");
   refused("--scalars z --isolines 3 --isoline-width 0", "--isoline-width: must lie in (0, 64]");
   refused({"--scalars", ""}, "--scalars: is empty");
   refused("--scalars distence", "did you mean 'distance'?", 1);

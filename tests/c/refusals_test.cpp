@@ -195,7 +195,7 @@ TEST(CRefusals, OtherKinds) {
   const CPicture p = square();
   std::vector<Vec4> linear(256);
   expect_ok(rastrum_frame_set_target(p.frame.get(), "linear", linear.data(), 4096, 0));
-  expect_refused(p.render(), "the linear target is of the shader 'material'", RASTRUM_UNSUPPORTED);
+  expect_refused(p.render(), "the linear target needs the shader 'material'", RASTRUM_UNSUPPORTED);
   expect_ok(rastrum_frame_set_target(p.frame.get(), "linear", nullptr, 0, 0));
   expect_ok(p.render());
   expect_ok(rastrum_frame_set_stopped(p.frame.get(), 1));
