@@ -239,7 +239,7 @@ std::int32_t Materials::texture(const Json& owner, const char* key, const Textur
   if (!info) return kNoTexture;
   if (use_of(*info) != expected) {
     scene_.warnings.push_back(info->path() +
-                              " has texture coordinates or a transform of its own, other than the "
+                              " has other texture coordinates or another transform than the "
                               "material's first texture; drawn without it");
     return kNoTexture;
   }

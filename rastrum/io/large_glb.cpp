@@ -240,7 +240,7 @@ class LargeGlb final : public LargeIndexed {
 
   void read_json(std::uint64_t memory_limit) {
     const Bytes bytes = bytes_of_file();
-    if (!is_glb(bytes)) refuse("it is no GLB; .gltf with files beside is read");
+    if (!is_glb(bytes)) refuse("it is not a GLB; a .gltf is read whole");
     const Glb glb = open_glb(bytes, name_);
     if (!glb.bin) refuse("it has no binary chunk");
     bin_ = static_cast<std::size_t>(glb.bin->data() - bytes.data());

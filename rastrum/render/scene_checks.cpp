@@ -245,7 +245,7 @@ std::string why_not_on_device(const SceneView& scene) {
         !is_packed(m.colors) || !m.face_materials.is_packed())
       return say("arrays that are not packed float32 or uint32, one value a vertex");
     if (instance.opacity != 1 || instance.color || !instance.visible)
-      return say("an opacity, a colour or a visibility of its own");
+      return say("its own opacity, colour or visibility");
   }
   return {};
 }
