@@ -91,7 +91,7 @@ TEST_F(Pipes, AreRefusedWhereTheyCannotBeMeant) {
   refused("render - - --format ply -o p.png", "standard input can be read only once");
   refused("render - --format mesh -o p.png", "--format: expected one of obj, ply");
   refused("render builtin:sphere -o p.png --output-format npy", "-o: the name of p.png says .png");
-  refused("render builtin:sphere --depth d.npy --output-format npy", "--output-format: is for -o");
+  refused("render builtin:sphere --depth d.npy --output-format npy", "--output-format: needs -o");
   EXPECT_TRUE(files().empty());
 }
 

@@ -115,7 +115,7 @@ TEST(CRefusals, Arrays) {
   expect_refused(rastrum_instance_set_scalars(scene, 0, kNone, RASTRUM_PER_VERTEX, 0),
                  "there is no colour map 0: the scene has 0");
   expect_ok(rastrum_scene_add_spheres(scene, array_of(kSquare), 1, nullptr));
-  expect_refused(rastrum_instance_set_colors(scene, 1, kNone, RASTRUM_PER_FACE), "meshes' alone");
+  expect_refused(rastrum_instance_set_colors(scene, 1, kNone, RASTRUM_PER_FACE), "only meshes");
   expect_refused(rastrum_instance_set_offsets(scene, 1, kNone), "instance 1: its kind of geometry");
   expect_ok(p.render());
 
