@@ -123,12 +123,9 @@ void add_window_options(Parser app, WindowArguments& a) {
         if (!s.ends_with(".png")) throw UsageError("--screenshots", "the name must end in .png");
         a.viewer.screenshots = NumberedName("--screenshots", s);
       });
-  add(app, "--target-ms", "N",
-      "milliseconds that a frame may take while something moves (default: 33)",
-      [&a](const std::string& s) {
-        a.viewer.target_ms = parse_number("--target-ms", s);
-        if (!(a.viewer.target_ms > 0)) throw UsageError("--target-ms", "must be greater than 0");
-      });
+  add_number_that(app, "--target-ms", "N",
+                  "milliseconds that a frame may take while something moves (default: 33)",
+                  a.viewer.target_ms, is_above_zero, "must be greater than 0");
 }
 
 std::string keys_help(std::span<const window::KeyHelp> camera,

@@ -39,7 +39,8 @@ void add_camera_options(Parser app, ViewOptions& v) {
   add_number(app, "--azimuth", "DEG", "move the eye around the scene, to the right", v.azimuth_deg);
   add_number(app, "--elevation", "DEG", "move the eye around the scene, upward", v.elevation_deg);
   add_number(app, "--roll", "DEG", "turn the picture counter-clockwise", v.roll_deg);
-  add_number(app, "--zoom", "TIMES", "show everything so many times as large", v.zoom);
+  add_number_that(app, "--zoom", "TIMES", "show everything so many times as large", v.zoom,
+                  is_above_zero, "must be greater than 0");
   add_integer(app, "--camera", "N", "take the N-th camera of the files, from 0", v.file_camera, 0,
               std::numeric_limits<int>::max());
   add_vec3(app, "--eye", "X,Y,Z", "where the camera stands", v.eye);
@@ -52,10 +53,11 @@ void add_camera_options(Parser app, ViewOptions& v) {
                : s == "z" ? Vec3d{0, 0, 1}
                           : parse_vec3("--up", s);
       });
-  add_number(
+  add_number_that(
       app, "--fov", "DEG",
       "field of view across the smaller side (default: 60; 30 if no option tells about the camera)",
-      v.fov_deg);
+      v.fov_deg, [](double degrees) { return degrees > 0 && degrees < 180; },
+      "must lie between 0 and 180 degrees");
   add_number(app, "--near", "N", "distance of the near plane (default: just before the scene)",
              v.near_plane);
   add(app, "--far", "F|inf",
@@ -69,7 +71,9 @@ void add_camera_options(Parser app, ViewOptions& v) {
       "scene needs",
       [&v](const std::string& s) {
         v.orthographic = true;
-        if (s != "fit") v.orthographic_height = parse_number("--orthographic", s);
+        if (s != "fit")
+          v.orthographic_height = parse_number_that("--orthographic", s, is_above_zero,
+                                                    "the height must be greater than 0");
       });
 }
 
@@ -101,10 +105,6 @@ void check_view(const ViewOptions& o) {
   if (o.file_camera && o.orthographic)
     throw UsageError("--orthographic",
                      "the camera of a file has its own projection: leave out this or --camera");
-  if (o.fov_deg && !(*o.fov_deg > 0 && *o.fov_deg < 180))
-    throw UsageError("--fov", "must lie between 0 and 180 degrees");
-  if (o.zoom && !(*o.zoom > 0 && std::isfinite(*o.zoom)))
-    throw UsageError("--zoom", "must be greater than 0");
   if (o.has_view()) (void)view_of(o);
   if (o.near_plane && !o.orthographic && !o.file_camera && !(*o.near_plane > 0))
     throw UsageError("--near", "must be greater than 0 for a perspective camera");
@@ -112,8 +112,6 @@ void check_view(const ViewOptions& o) {
     throw UsageError("--far", "must be greater than --near");
   if (o.far_plane && o.orthographic && !std::isfinite(*o.far_plane))
     throw UsageError("--far", "must be finite for an orthographic camera");
-  if (o.orthographic_height && !(*o.orthographic_height > 0))
-    throw UsageError("--orthographic", "the height must be greater than 0");
 }
 
 }  // namespace rastrum::cli

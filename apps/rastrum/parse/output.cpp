@@ -190,10 +190,9 @@ void add_path_options(Parser app, RunOptions& a, const std::string& fps_help) {
       "draw a picture for each moment of the camera path in FILE (docs/window.md): -o "
       "'frame_%04d.png' or, through ffmpeg, -o flight.mp4",
       [&a](const std::string& s) { a.path = s; });
-  add(app, "--fps", "N", fps_help, [&a](const std::string& s) {
-    a.fps = parse_number("--fps", s);
-    if (!(*a.fps > 0 && *a.fps <= 1000)) throw UsageError("--fps", "must lie in 0 to 1000");
-  });
+  add_number_that(
+      app, "--fps", "N", fps_help, a.fps, [](double fps) { return fps > 0 && fps <= 1000; },
+      "must be greater than 0 and at most 1000");
 }
 
 void add_frames_option(Parser app, RunOptions& a) {

@@ -89,13 +89,11 @@ void add_drawing_options(Parser app, RenderArguments& a) {
       "auto)",
       a.out_of_core,
       {{"auto", OutOfCore::automatic}, {"always", OutOfCore::always}, {"never", OutOfCore::never}});
-  add(app, "--timeout", "S",
+  add_number_that(
+      app, "--timeout", "S",
       "with mpirun: end the job if a rank waits longer than this for the others, in seconds, and "
       "say in which phase (default: wait for ever)",
-      [&a](const std::string& s) {
-        a.timeout_s = parse_number("--timeout", s);
-        if (!(*a.timeout_s > 0)) throw UsageError("--timeout", "must be greater than 0");
-      });
+      a.timeout_s, is_above_zero, "must be greater than 0");
 }
 
 /// All outputs of a picture, asked for or not.
