@@ -149,7 +149,8 @@ Unpacked decode_draco(const Json& primitive, const Json& extension, const Json& 
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(packed.data()), packed.size());
   auto decoded = draco::Decoder().DecodeMeshFromBuffer(&buffer);
-  if (!decoded.ok()) extension.fail("is no sound stream: " + decoded.status().error_msg_string());
+  if (!decoded.ok())
+    extension.fail("is not a valid stream: " + decoded.status().error_msg_string());
   const draco::Mesh& mesh = *decoded.value();
   if (mesh.num_points() != vertices || mesh.num_faces() != corners / 3)
     extension.fail("has " + std::to_string(mesh.num_faces()) + " triangles of " +

@@ -132,7 +132,7 @@ HeightGrid read_height_gdal(const std::filesystem::path& file, const ReadOptions
   const std::unique_ptr<void, decltype(GDALClose)*> data(
       gdal.open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers, nullptr, nullptr),
       gdal.close);
-  if (!data) fail("is no sound GeoTIFF");
+  if (!data) fail("is not a valid GeoTIFF");
   const int width = gdal.x_size(data.get()), height = gdal.y_size(data.get());
   if (gdal.count(data.get()) < 1) fail("holds no band of heights");
   if (width > kMaxImageSize || height > kMaxImageSize)
