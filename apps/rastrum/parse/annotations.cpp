@@ -59,15 +59,17 @@ void add_annotation_options(Parser app, AnnotationOptions& a) {
              "how far away a surface still shuts out light, in the scene's units (default: 0.15 of "
              "the scene's radius)",
              a.occlusion_radius, 1e-37, 1e37);
-  add_number(app, "--occlusion-strength", "S", "how much (1)", a.occlusion_strength, 0, 16);
+  add_number(app, "--occlusion-strength", "S", "how strongly --occlusion darkens (default: 1)",
+             a.occlusion_strength, 0, 16);
   app.add_flag("--edl", a.dome,
                "darken what lies behind its neighbours (eye-dome lighting); it gives clouds of "
                "points a shape");
-  add_number(app, "--edl-strength", "S", "how much (1)", a.dome_strength, 0, 100);
+  add_number(app, "--edl-strength", "S", "how strongly --edl darkens (default: 1)", a.dome_strength,
+             0, 100);
   app.add_flag(
       "--silhouettes", a.silhouettes,
       "draw a black line where a surface ends, bends by more than 35 degrees or meets another one");
-  app.add_flag("--edges", a.edges, "draw the edges of the meshes that are seen as black lines");
+  app.add_flag("--edges", a.edges, "draw the visible edges of the meshes as black lines");
   add_number_that(
       app, "--edge-angle", "DEG",
       "draw an edge between two faces only where they meet at more than this angle; 30 leaves "
@@ -80,8 +82,7 @@ void add_annotation_options(Parser app, AnnotationOptions& a) {
 
 void check_words(const WordOptions& a, bool has_colors) {
   if (a.any() && !has_colors)
-    throw UsageError(a.title.empty() ? "--caption" : "--title",
-                     "is written into a picture: give -o");
+    throw UsageError(a.title.empty() ? "--caption" : "--title", "needs a picture: give -o");
 }
 
 void check_annotations(const AnnotationOptions& a, bool has_colors) {
@@ -94,7 +95,7 @@ void check_annotations(const AnnotationOptions& a, bool has_colors) {
                      : a.dome      ? "--edl"
                      : a.edges     ? "--edges"
                                    : "--silhouettes",
-                     "is drawn into a picture: give -o");
+                     "needs a picture: give -o");
   if ((a.occlusion_radius || a.occlusion_strength) && !a.occlusion)
     throw UsageError(a.occlusion_radius ? "--occlusion-radius" : "--occlusion-strength",
                      "needs --occlusion");

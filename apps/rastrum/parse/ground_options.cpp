@@ -92,7 +92,7 @@ void check_ground(GroundOptions& ground, const TerrainSceneArguments& a, const F
   check_numbers(ground, a, has_colors, given);
   const char* const drawn = ground.axes ? "--axes" : ground.bounds ? "--bounds" : nullptr;
   if (drawn == nullptr) return;
-  if (!has_colors) throw UsageError(drawn, "is drawn into a picture: give -o");
+  if (!has_colors) throw UsageError(drawn, "needs a picture: give -o");
   if (a.options.projection != terrain::Projection::planar)
     throw UsageError(drawn, "needs --projection planar, where straight lines stay straight");
   if (ground.bounds && !a.input.height)

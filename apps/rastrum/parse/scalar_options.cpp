@@ -173,7 +173,7 @@ void check_scalars(const ScalarOptions& s, bool has_colors) {
     if (option != nullptr) throw UsageError(option, "needs numbers: say which, as in --scalars z");
     return;
   }
-  if (s.bar() && !has_colors) throw UsageError("--bar", "is drawn into a picture: give -o");
+  if (s.bar() && !has_colors) throw UsageError("--bar", "needs a picture: give -o");
   if (!s.bar() && !s.bar_unit.empty()) throw UsageError("--bar-unit", "needs --bar");
   if (s.of_lines != nullptr && s.isoline_count == 0 && s.mapping.isolines.empty())
     throw UsageError(s.of_lines, "needs --isolines");
