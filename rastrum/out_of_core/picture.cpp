@@ -15,6 +15,7 @@
 #include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/raster/rules/piece.hpp>
 #include <rastrum/render/access.hpp>
+#include <rastrum/render/target_checks.hpp>
 #include <rastrum/render/tone_pass.hpp>
 #include <rastrum/scene/mesh_clusters.hpp>
 #include <rastrum/stop.hpp>
@@ -172,18 +173,13 @@ void Picture::check() const {
           "the environment behind a picture in bands of rows is not drawn");
   require(is_whole() || frame_.shader != Shader::depth,
           "the shader depth stretches the depths of a whole picture, not of bands of rows");
-  if (options_.rows < 0 || options_.rows % raster::kBinSize != 0)
-    throw Error(Errc::invalid_argument,
-                "rows: " + std::to_string(options_.rows) +
-                    " rows at once; give a multiple of 64, or 0 for all of the picture");
+  check_band_rows(options_.rows);
   if (!is_whole())
     ranks::each_target(targets_, [&](const auto& view, std::uint32_t) {
       check_size(view, frame_.width, std::min(options_.rows, frame_.height),
                  "a target of a band of rows");
     });
-  if (!is_whole() && options_.rows < frame_.height && !options_.take_rows)
-    throw Error(Errc::invalid_argument,
-                "rows: the next rows would overwrite these; give take_rows, which takes them");
+  check_bands_taken(options_.rows, frame_.height, static_cast<bool>(options_.take_rows));
 }
 
 void Picture::divide_memory() {

@@ -82,9 +82,7 @@ void PartsFrame::begin(const SceneView& scene, std::span<const std::uint64_t> pa
       throw Error(Errc::unsupported,
                   "a picture of several ranks: the environment behind it (environment_behind) is "
                   "not drawn");
-    if (options_.rows < 0 || options_.rows % raster::kBinSize != 0)
-      reject("rows: ", options_.rows,
-             " rows at once; give a multiple of 64, or 0 for all of the picture");
+    check_band_rows(options_.rows);
     scene_ = scene;
     own_.emplace(scene, parts);
     const bool has_parts = !own_->parts.empty(), has_materials = !scene_.materials.empty();
@@ -152,8 +150,7 @@ void PartsFrame::ask(const Targets& callers) {
       throw Error(Errc::unsupported,
                   "a picture in bands of rows: the shader depth stretches the depths of a whole "
                   "picture");
-    if (options_.rows != 0 && options_.rows < frame_.height && !options_.take_rows)
-      reject("rows: the next rows would overwrite these; give take_rows, which takes them");
+    check_bands_taken(options_.rows, frame_.height, static_cast<bool>(options_.take_rows));
     if (greys) {
       filled_.color8 = {};
       filled_.color = {};

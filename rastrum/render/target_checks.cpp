@@ -13,6 +13,7 @@
 #include <rastrum/error.hpp>
 #include <rastrum/raster/context/target_table.hpp>
 #include <rastrum/raster/draws/shader_table.hpp>
+#include <rastrum/raster/kernels/kernels.hpp>
 #include <rastrum/render/scene_checks.hpp>
 
 namespace rastrum {
@@ -103,6 +104,16 @@ void check_apart(const Targets& targets, const InstanceRuns& runs) {
                  " target overlap in memory; give each its own");
     });
   }
+}
+
+void check_band_rows(int rows) {
+  if (rows < 0 || rows % raster::kBinSize != 0)
+    reject("rows: ", rows, " rows at once; give a multiple of 64, or 0 for all of the picture");
+}
+
+void check_bands_taken(int rows, int height, bool taken) {
+  if (rows != 0 && rows < height && !taken)
+    reject("rows: the next rows would overwrite these; give take_rows, which takes them");
 }
 
 void check_loaded(ImageView<const std::uint64_t> held, std::uint64_t first_id,

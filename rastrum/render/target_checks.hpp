@@ -15,6 +15,11 @@ namespace rastrum {
 /// overlap, and names them. `whole`: false if the targets have only some rows of the frame.
 void check_targets(const Targets& targets, const FrameOptions& frame, bool whole = true);
 
+/// Throws Error{invalid_argument} where no picture can be drawn in bands of `rows` rows (0: whole).
+void check_band_rows(int rows);
+/// The same where a frame of `height` rows has several bands and nobody takes them.
+void check_bands_taken(int rows, int height, bool taken);
+
 /// Throws Error{invalid_argument} where a target overlaps an array that the scene is read from.
 /// O(runs).
 void check_apart(const Targets& targets, const InstanceRuns& runs);
