@@ -108,7 +108,7 @@ class Scene:
         if not isinstance(scalars, str):
             raise ArgumentTypeError(f"scalars: must be a name for files, not {scalars!r}")
         if not self.files:
-            raise ArgumentError("scalars: is the name of a file's numbers, but there is no file; give a Mesh its scalars itself")
+            raise ArgumentError("scalars: names the numbers of files, but there is no file; give a Mesh its scalars itself")
         if isinstance(cmap, ColorMapping) and clim is not None:
             raise ArgumentError("clim: the ColorMapping already has a range")
         mapping = cmap if isinstance(cmap, ColorMapping) else ColorMapping(cmap, clim)

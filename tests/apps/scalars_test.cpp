@@ -113,7 +113,7 @@ TEST_F(Scalars, RefuseWhatCannotBeMeant) {
   refused("--scalars z --scalar-opacity 0:2", "--scalar-opacity: [0]");
   refused("--scalars z --isoline-width 3", "--isoline-width: needs --isolines");
   refused("--scalars z --isolines 3 --isoline-width 0", "--isoline-width: must lie in (0, 64]");
-  refused({"--scalars", ""}, "--scalars: is empty");
+  refused({"--scalars", ""}, "--scalars: the name is empty");
   refused("--scalars distence", "did you mean 'distance'?", 1);
   refused("--scalars z --cmap Viridis", "did you mean 'viridis'?");
   refused("--scalars z --cmap coolwarn_r", "did you mean 'coolwarm_r'?");
