@@ -36,7 +36,7 @@ int run_hashed(std::span<const std::string_view> arguments) {
   TableOptions options;
   int size = 512;
   OptionParser parser("hashed", "Hashed against sorted visibility over depth complexity 1 to 64.");
-  parser.add_option("--size", size, "edge of the picture in px (512)")->range(8, 8192);
+  parser.add_option("--size", size, "edge of the picture in px (default: 512)")->range(8, 8192);
   if (const auto status = options.read(parser, arguments)) return *status;
   size = options.size(size);
   Document document =
@@ -102,7 +102,7 @@ int run_hiz(std::span<const std::string_view> arguments) {
   TableOptions options;
   int size = 1024;
   OptionParser parser("hiz", "The gain of hierarchical Z on depth complexity 1, 4, 16 and 64.");
-  parser.add_option("--size", size, "edge of the picture in px (1024)")->range(8, 8192);
+  parser.add_option("--size", size, "edge of the picture in px (default: 1024)")->range(8, 8192);
   if (const auto status = options.read(parser, arguments)) return *status;
   size = options.size(size);
   Document document = options.document("hiz", "Hierarchical Z: time without over time with");

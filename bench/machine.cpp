@@ -123,7 +123,7 @@ int run_machine(std::span<const std::string_view> options) {
   int threads = 2;
   std::string json;
   OptionParser parser("machine", "memory bandwidth and arithmetic, all threads at once");
-  parser.add_option("--threads", threads, "threads (2)")->range(1, 1024);
+  parser.add_option("--threads", threads, "number of threads (default: 2)")->range(1, 1024);
   parser.add_option("--json", json, "write the figures to FILE")->type_name("FILE");
   if (const auto status = parser.parse(options)) return *status;
 

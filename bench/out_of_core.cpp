@@ -167,10 +167,11 @@ int run_out_of_core(std::span<const std::string_view> arguments) {
   double millions = 20, limit_gib = 2;
   std::string folder = std::filesystem::temp_directory_path().string(), keep;
   bool warm_only = false, no_comparison = false;
-  parser.add_option("--millions", millions, "triangles, in millions (20)");
-  parser.add_option("--limit", limit_gib, "memory limit, GiB (2)");
-  parser.add_option("--folder", folder, "where the mesh is written, 19 bytes a triangle");
-  parser.add_option("--keep", keep, "a file that is left there, or drawn if it is there");
+  parser.add_option("--millions", millions, "millions of triangles (default: 20)");
+  parser.add_option("--limit", limit_gib, "memory limit in GiB (default: 2)");
+  parser.add_option("--folder", folder, "folder to which the mesh is written, 19 bytes a triangle");
+  parser.add_option("--keep", keep,
+                    "name of the mesh there: drawn if it exists, else made and kept");
   parser.add_flag("--warm", warm_only, "do not take the file out of the page cache first");
   parser.add_flag("--no-comparison", no_comparison, "do not draw a tenth in memory first");
   if (const auto status = parser.parse(arguments)) return *status;

@@ -239,7 +239,8 @@ int run_prepared(std::span<const std::string_view> arguments) {
                       "Frames of prepared meshes beside the same unprepared. --mesh NAME: sponza, "
                       "brain and its kin, or hall, of 27,000 and of a million balls. All of it "
                       "takes some minutes and 6 GB.");
-  parser.add_option("--samples", samples, "samples a pixel: 1, 4, 8, 16 (1)")->range(1, 16);
+  parser.add_option("--samples", samples, "samples a pixel: 1, 4, 8, 16 (default: 1)")
+      ->range(1, 16);
   if (const auto status = options.read(parser, arguments, true)) return *status;
   Started<EmbreePeer> embree(options.threads);
   Turns contest(options, samples, embree);

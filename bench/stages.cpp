@@ -252,7 +252,7 @@ int run_stages(std::span<const std::string_view> arguments) {
   Selection selection({scene_by_name("bunny"), scene_by_name("dragon"), scene_by_name("brain")},
                       {{1024, 1024}});
   OptionParser parser("stages", "Cycles a triangle and a pixel of each stage, on one thread.");
-  parser.add_option("--rounds", options.rounds, "rounds of A B C … (9)")->range(1, 1000);
+  parser.add_option("--rounds", options.rounds, "rounds of A B C … (default: 9)")->range(1, 1000);
   parser.add_option("--out", options.out, "write NAME.md, NAME.json and NAME.svg into FOLDER")
       ->type_name("FOLDER");
   parser.add_option("--json", json, "write the figures with all samples to FILE")

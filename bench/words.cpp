@@ -254,11 +254,14 @@ nlohmann::json bench_reduce_by_index(Threads& exec, const WordsOptions& options)
 int run_words(std::span<const std::string_view> args) {
   WordsOptions options;
   OptionParser parser("words", "the data-parallel words beside what one would use instead");
-  parser.add_option("--rounds", options.rounds, "rounds (9)")->range(1, 1000);
-  parser.add_option("--threads", options.threads, "threads (2)")->range(1, 1024);
-  parser.add_option("--elements", options.elements, "elements that expand_masked tests (1000000)")
+  parser.add_option("--rounds", options.rounds, "number of rounds (default: 9)")->range(1, 1000);
+  parser.add_option("--threads", options.threads, "number of threads (default: 2)")->range(1, 1024);
+  parser
+      .add_option("--elements", options.elements,
+                  "elements that expand_masked tests (default: 1000000)")
       ->range(256, 1 << 30);
-  parser.add_option("--pairs", options.pairs, "pairs to sort, words to reduce (10000000)")
+  parser
+      .add_option("--pairs", options.pairs, "pairs to sort and words to reduce (default: 10000000)")
       ->range(1, 1 << 30);
   parser.add_option("--json", options.json, "write the figures to FILE")->type_name("FILE");
   if (const auto status = parser.parse(args)) return *status;

@@ -24,7 +24,7 @@ int run(const std::vector<std::string>& arguments) {
   for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
   argv.push_back(nullptr);
   ::execv(program.c_str(), argv.data());
-  throw Error(Errc::unsupported, "the benchmarks are a program of their own, and " + program +
+  throw Error(Errc::unsupported, "the benchmarks are a separate program, but " + program +
                                      " cannot be started (" + std::strerror(errno) +
                                      "): build the target rastrum_bench_program");
 }

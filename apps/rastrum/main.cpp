@@ -105,7 +105,7 @@ int main(int argc, char** argv) {
       return report_usage(not_a_command(args[0], known).c_str(), app);
     if (!app.parse(args)) return flushed(0);
     if (!args.empty() && args[0] == "terrain")
-      rastrum::cli::refuse_ranks("terrains are drawn alone");
+      rastrum::cli::refuse_ranks("a terrain is drawn by one program alone");
     for (const rastrum::cli::Command& command : commands)
       if (command.parser.parsed()) return flushed(command.run());
     return 0;

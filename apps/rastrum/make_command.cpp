@@ -54,7 +54,8 @@ int run(const MakeArguments& a) {
   const bool is_of_surfaces =
       scene.meshes.empty() && !scene.geometries.empty() && is_shape(a.input);
   if (is_of_surfaces)
-    throw UsageError(a.input, "is no mesh, and PLY has no such surfaces; `render` draws them");
+    throw UsageError(a.input,
+                     "is not a mesh, and PLY has no such surfaces; `rastrum render` draws them");
   Flattened flat = flatten(std::move(scene));
   if (a.subdivide > 0) flat.mesh = shapes::subdivide(flat.mesh, a.subdivide);
   progress.clear();
@@ -91,9 +92,9 @@ Command add_make_command(Parser& app) {
         arguments->output = parse_output("-o", s, {Format::ply});
       })
       ->required();
-  add_integer(make, "--subdivide", "K", "split every triangle in 4, K times (0)",
+  add_integer(make, "--subdivide", "K", "split every triangle into 4, K times (default: 0)",
               arguments->subdivide, 0, kMaxSubdivisions);
-  make.add_flag("--quiet", arguments->quiet, "print errors alone");
+  make.add_flag("--quiet", arguments->quiet, "print only errors");
   std::string footer = "Shapes and their defaults:\n";
   for (const shapes::ShapeInfo& shape : shapes::catalogue())
     footer += "  " + shape.name + (shape.parameters.empty() ? "" : "?") + shape.parameters +

@@ -43,7 +43,7 @@ std::optional<Launch> launched() {
                   .append(why)
                   .append("; start it alone, or unset ")
                   .append(launch.name)
-                  .append(" where each draws a picture of its own"));
+                  .append(" if each is to draw its own picture"));
 }
 
 #if defined(RASTRUM_HAS_MPI)

@@ -53,7 +53,7 @@ int run(RenderArguments& a, const StartRanks& start) {
       return draw_part(a, *ranks);
   }
   if (a.timeout_s)
-    throw UsageError("--timeout", "is of several ranks, as in mpirun -n 8 rastrum render");
+    throw UsageError("--timeout", "needs several ranks, as in mpirun -n 8 rastrum render");
   check_files(a);
   if (const std::optional<OutOfCoreFile> large = large_input(a))
     draw(LargeJob(a, *large));

@@ -55,20 +55,21 @@ struct TerrainArguments : TerrainSceneArguments, RunOptions {
 void add_outputs(Parser app, TerrainArguments& a) {
   app = app.under("Outputs");
   add(app, "-o,--output", "FILE",
-      ".png: 8 bit; with --path also .mp4; - is standard output, here and below",
+      "the picture, .png: 8 bit; with --path also .mp4; - is standard output, here and below",
       [&a](const std::string& s) {
         a.color = parse_output("-o", s, {Format::png, Format::mp4});
       });
-  add_output(app, "--depth", ".npy or .exr: float32, cells along the view, inf where the sky is",
+  add_output(app, "--depth",
+             "distance along the view in cells, .npy or .exr: float32, inf where the sky is",
              a.depth, {Format::npy, Format::exr});
-  add_output(app, "--stats", ".json: counts, memory and times", a.stats, {Format::json});
+  add_output(app, "--stats", "counts, memory and times, .json", a.stats, {Format::json});
   add_hash_option(app, a);
-  app.add_flag("--quiet", a.quiet, "print errors alone");
+  app.add_flag("--quiet", a.quiet, "print only errors");
 }
 
 void check_path(const TerrainArguments& a) {
   if (a.frames)
-    throw UsageError("--frames", "leaves no room for --path: both say how many frames are drawn");
+    throw UsageError("--frames", "cannot go with --path: both say how many frames are drawn");
   if (a.color.is_film()) Mp4Writer::check(a.options.width, a.options.height);
   for (const Output* const output : {&a.color, &a.depth})
     static_cast<void>(numbered(*output, 0, 1));  // throws for a wrong %d
@@ -84,15 +85,16 @@ void check_files(const TerrainArguments& a) {
 void check(TerrainArguments& a) {
   if (!a.color && !a.depth && !a.stats && !a.hash)
     throw UsageError("-o", "say where the picture goes, as in -o picture.png");
-  if (a.path.empty() && a.fps) throw UsageError("--fps", "is for --path");
+  if (a.path.empty() && a.fps) throw UsageError("--fps", "needs --path");
   if (a.path.empty() && a.color.is_film())
-    throw UsageError("-o", "an .mp4 is drawn along a camera path: give --path");
+    throw UsageError("-o", "an .mp4 needs several pictures: give --path");
   if (!a.path.empty()) check_path(a);
   check_terrain_objects(a.objects, a.options);
   check_ground(a.ground, a, a.frame(), a.objects.scene.lights, a.color || a.hash, a.given);
   check_words(a.words, a.color || a.hash);
   if (a.words.scale_given && !a.words.any() && !a.ground.draws())
-    throw UsageError("--text-scale", "is for --title, --caption, --bar, --axes and --bounds");
+    throw UsageError("--text-scale",
+                     "scales --title, --caption, --bar, --axes and --bounds; give one of them");
   check_files(a);
 }
 
@@ -314,7 +316,8 @@ Command add_terrain_command(Parser& app) {
   add_terrain_inputs(command, *arguments);
   add_outputs(command, *arguments);
   add_terrain_camera(command, *arguments);
-  add_path_options(command.under("Camera path"), *arguments, "pictures a second of the path (30)");
+  add_path_options(command.under("Camera path"), *arguments,
+                   "pictures a second of the path (default: 30)");
   add_terrain_picture(command, *arguments);
   add_terrain_light(command, *arguments);
   add_ground_lights(command, arguments->frame(), arguments->objects.scene.lights);

@@ -72,7 +72,7 @@ std::vector<TerrainInput> maps_of(const ViewTerrainArguments& a) {
   std::vector<TerrainInput> maps;
   TerrainInput one = a.input;
   one.function.clear();
-  if (one.color && !one.height) throw UsageError("--color", "goes with --height");
+  if (one.color && !one.height) throw UsageError("--color", "needs --height");
   if (one.height) maps.push_back(one);
   for (const std::string& file : a.maps) {
     one.height = file;
@@ -115,18 +115,17 @@ int run(Arguments&) {
 
 void add_window_options(Parser app, WindowArguments& a) {
   app = app.under("Window");
-  add(app, "--script", "FILE", "replay a camera path or a list of events (docs/window.md)",
+  add(app, "--script", "FILE",
+      "replay the camera path or the list of events in FILE (docs/window.md)",
       [&a](const std::string& s) { a.script = s; });
-  add(app, "--screenshots", "NAME", "what screenshots are called (rastrum_%04d.png)",
+  add(app, "--screenshots", "NAME", "name of the screenshots (default: rastrum_%04d.png)",
       [&a](const std::string& s) {
         if (!s.ends_with(".png")) throw UsageError("--screenshots", "the name must end in .png");
         a.viewer.screenshots = NumberedName("--screenshots", s);
       });
-  add(app, "--target-ms", "N", "milliseconds that a frame may take while something moves (33)",
-      [&a](const std::string& s) {
-        a.viewer.target_ms = parse_number("--target-ms", s);
-        if (!(a.viewer.target_ms > 0)) throw UsageError("--target-ms", "must be greater than 0");
-      });
+  add_number_that(app, "--target-ms", "N",
+                  "milliseconds that a frame may take while something moves (default: 33)",
+                  a.viewer.target_ms, is_above_zero, "must be greater than 0");
 }
 
 std::string keys_help(std::span<const window::KeyHelp> camera,
@@ -152,7 +151,8 @@ Command add_view_command(Parser& app) {
       "view", "Look at meshes in a window, or fly over a terrain with --terrain");
   add_input_option(view, a)->required();
   // main sends a terrain's command line to view-terrain.
-  view.add_flag("--terrain", a.terrain, "fly over a terrain; see rastrum view --terrain --help");
+  view.add_flag("--terrain", a.terrain,
+                "fly over a terrain; `rastrum view --terrain --help` shows its options");
   add_window_options(view, a.window);
   add_picture_options(view, a);
   add_look_option(view, a);
@@ -160,14 +160,15 @@ Command add_view_command(Parser& app) {
   add_camera_options(view, a.view);
   add_annotation_options(view, a.annotations);
   add_machine_options(view, a);
-  view.footer(keys_help(window::MeshControl::keys(), window::MeshSubject::command_keys()) +
-              "Drag to orbit, with the right button to look around, with the middle one or Shift\n"
-              "to pan; the wheel zooms; a file dropped on the window is opened.\n"
-              "\nExamples:\n"
-              "  rastrum view dragon.ply\n"
-              "  rastrum view engine.glb --opacity 0.3 --samples 4\n"
-              "  rastrum view builtin:teapot --script flight.json\n"
-              "  rastrum view --terrain --height alps.png --color alps.jpg --shadows sharp");
+  view.footer(
+      keys_help(window::MeshControl::keys(), window::MeshSubject::command_keys()) +
+      "Drag to orbit; drag with the right button to look around, with the middle one or Shift\n"
+      "to pan. The wheel zooms. A file dropped on the window is opened.\n"
+      "\nExamples:\n"
+      "  rastrum view dragon.ply\n"
+      "  rastrum view engine.glb --opacity 0.3 --samples 4\n"
+      "  rastrum view builtin:teapot --script flight.json\n"
+      "  rastrum view --terrain --height alps.png --color alps.jpg --shadows sharp");
   return {view, [arguments, view] {
             arguments->given = view.all_given();
             return run(*arguments);
@@ -177,9 +178,10 @@ Command add_view_command(Parser& app) {
 Command add_view_terrain_command(Parser& app) {
   auto arguments = std::make_shared<ViewTerrainArguments>();
   ViewTerrainArguments& a = *arguments;
-  Parser view = app.add_subcommand("view-terrain", "Fly over a terrain; also view --terrain");
+  Parser view =
+      app.add_subcommand("view-terrain", "Fly over a terrain (the same as view --terrain)");
   view.group("");
-  view.add_option("MAP", a.maps, "further height maps, for the key F1")->type_name("");
+  view.add_option("MAP", a.maps, "more height maps; the key F1 takes the next one")->type_name("");
   add_window_options(view, a.window);
   add_terrain_inputs(view, a);
   add_terrain_camera(view, a);
@@ -190,7 +192,7 @@ Command add_view_terrain_command(Parser& app) {
   add_terrain_machine(view, a);
   view.footer(
       keys_help(window::TerrainControl::keys(), window::TerrainSubject::command_keys()) +
-      "Drag to turn, the wheel climbs; a height map dropped on the window is opened.\n"
+      "Drag to turn. The wheel climbs. A height map dropped on the window is opened.\n"
       "\nExamples:\n"
       "  rastrum view --terrain --height alps.png --color alps.jpg --shadows sharp\n"
       "  rastrum view --terrain one.dem two.tif --function noise\n"

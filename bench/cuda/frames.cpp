@@ -94,7 +94,7 @@ int run_cuda_frames(std::span<const std::string_view> arguments) {
   TableOptions options;
   std::string only;
   OptionParser parser("cuda-frames", "Frames of meshes on a GPU at 1920 × 1080.");
-  parser.add_option("--scene", only, "this one alone (those of `bench peers`, and bunny-17m)")
+  parser.add_option("--scene", only, "run only this scene: one of `bench peers`, or bunny-17m")
       ->type_name("NAME");
   options.device = Device::cuda;
   if (const auto status = options.read(parser, arguments)) return *status;

@@ -198,7 +198,7 @@ int run_peers(std::span<const std::string_view> arguments) {
   PeersOptions options;
   Selection selection(peer_scenes(), {{1024, 1024}, {1920, 1080}, {4096, 4096}});
   OptionParser parser("peers", "Frames of Rastrum, llvmpipe and Embree, interleaved, `phong`.");
-  parser.add_option("--rasterizer", options.rasterizer, "Rastrum's rasterizer (auto)");
+  parser.add_option("--rasterizer", options.rasterizer, "Rastrum's rasterizer (default: auto)");
   if (const auto status = options.read(parser, selection, arguments)) return *status;
 
   Peers peers{Started<GlPeer>(options.threads), Started<EmbreePeer>(options.threads)};

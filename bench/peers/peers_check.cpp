@@ -70,7 +70,7 @@ int run_peers_check(std::span<const std::string_view> arguments) {
   Selection selection(peer_scenes(), {{1024, 1024}, {1920, 1080}});
   OptionParser parser("peers-check", "Coverage, fragment counts and phong against OpenGL's.");
   selection.add_to(parser);
-  parser.add_option("--threads", threads, "threads of each (2)")->range(1, 1024);
+  parser.add_option("--threads", threads, "threads of each contender (default: 2)")->range(1, 1024);
   parser.add_option("--json", json, "write the figures to FILE")->type_name("FILE");
   if (const auto status = parser.parse(arguments)) return *status;
   selection.resolve();

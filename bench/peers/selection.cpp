@@ -30,10 +30,13 @@ void Selection::add_to(OptionParser& parser) {
     known += (known.empty() ? "" : ",") + std::string(scene.name);
   std::string sizes;
   for (const Size size : sizes_) sizes += (sizes.empty() ? "" : ",") + size_text(size);
-  parser.add_option("--scenes", scene_names_, "scenes, by comma (" + known + ")")
+  parser
+      .add_option("--scenes", scene_names_, "scenes, separated by commas (default: " + known + ")")
       ->delimiter(',')
       ->type_name("NAMES");
-  parser.add_option("--sizes", size_names_, "image sizes, by comma (" + sizes + ")")
+  parser
+      .add_option("--sizes", size_names_,
+                  "image sizes, separated by commas (default: " + sizes + ")")
       ->delimiter(',')
       ->type_name("WxH");
 }
@@ -68,9 +71,9 @@ std::optional<int> PeerOptions::read(OptionParser& parser, Selection& selection,
                                      std::span<const std::string_view> arguments) {
   bool quick = false;
   selection.add_to(parser);
-  parser.add_option("--rounds", rounds, "rounds of A B C … (9)")->range(1, 1000);
-  parser.add_option("--threads", threads, "threads of each contender (2)")->range(1, 1024);
-  parser.add_flag("--quick", quick, "3 rounds, 1024x1024 unless told otherwise");
+  parser.add_option("--rounds", rounds, "rounds of A B C … (default: 9)")->range(1, 1000);
+  parser.add_option("--threads", threads, "threads of each contender (default: 2)")->range(1, 1024);
+  parser.add_flag("--quick", quick, "3 rounds, at 1024x1024 unless --sizes says otherwise");
   parser.add_option("--json", json, "write all samples to FILE")->type_name("FILE");
   if (const auto status = parser.parse(arguments)) return status;
   if (quick) {

@@ -14,13 +14,14 @@ std::optional<int> TableOptions::read(OptionParser& parser,
     parser
         .add_option("--mesh", mesh,
                     "a mesh for all columns, brought to each column's number of triangles "
-                    "(generated balls)")
+                    "(default: generated balls)")
         ->type_name("FILE");
   parser.add_option("--out", out, "write NAME.md, NAME.json and NAME.svg into FOLDER")
       ->type_name("FOLDER");
-  parser.add_option("--rounds", rounds, "rounds of A B C … (" + std::to_string(rounds) + ")")
+  parser
+      .add_option("--rounds", rounds, "rounds of A B C … (default: " + std::to_string(rounds) + ")")
       ->range(1, 1000);
-  parser.add_option("--threads", threads, "threads (all)")->range(1, 1024);
+  parser.add_option("--threads", threads, "number of threads (default: all)")->range(1, 1024);
   parser.add_flag(
       "--quick", quick,
       "a smoke test: 1 round, pictures of an eighth of the edge, a 32nd of the triangles");

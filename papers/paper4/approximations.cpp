@@ -14,7 +14,7 @@ namespace {
 using Blend = std::unique_ptr<LayerBlend>;
 
 constexpr AddedTransparency approximation(decltype(AddedTransparency::make) make) {
-  return {make, 0, "the approximations of transparency are the CPU's"};
+  return {make, 0, "only the CPU has the approximations of transparency"};
 }
 constexpr auto kWboit =
     approximation([](const TransparencyOptions&, Isa isa) -> Blend { return make_wboit(isa); });
@@ -31,7 +31,7 @@ constexpr auto kFilters = [] {
   for (int k = 1; k <= 64; ++k)
     methods[static_cast<std::size_t>(k - 1)] = {
         transparency::make_exact_blend, k,
-        "the filter without repair, whose errors are those of the CPU's blocks, is the CPU's"};
+        "only the CPU has the filter without repair, since its errors depend on the CPU's blocks"};
   return methods;
 }();
 

@@ -107,7 +107,7 @@ int run_paper5_table3(std::span<const std::string_view> arguments) {
   int scale = 1;
   OptionParser parser("paper5-table3",
                       "Paper 5, table 3 and figure 3: Landshark by the number of threads.");
-  parser.add_option("--scale", scale, "of the picture (1)")->range(1, 128);
+  parser.add_option("--scale", scale, "image scale (default: 1)")->range(1, 128);
   if (const auto status = options.read(parser, arguments, true)) return *status;
   Document document = options.document("paper5-table3", "Paper 5, table 3 and figure 3: threads");
   document.notes.push_back(

@@ -167,15 +167,23 @@ int run_paper5_table4(std::span<const std::string_view> arguments) {
                       "Paper 5, table 4: Bunny by subdivisions and image scale, streamed where it "
                       "does not fit.");
   options.add_device(parser);
-  parser.add_option("--memory-limit", limits.memory, "scratch of a frame in bytes (2 GiB)")
+  parser
+      .add_option("--memory-limit", limits.memory,
+                  "most scratch memory of a frame, in bytes (default: 2 GiB)")
       ->as_size();
-  parser.add_option("--image-memory", limits.images, "keys and pictures held at once (6 GiB)")
+  parser
+      .add_option("--image-memory", limits.images,
+                  "most memory of keys and pictures at once, in bytes (default: 6 GiB)")
       ->as_size();
-  parser.add_option("--part", limits.part_triangles, "triangles of a mesh in memory (32 Mi)")
+  parser
+      .add_option("--part", limits.part_triangles,
+                  "most triangles of a mesh in memory (default: 32 Mi)")
       ->range(std::uint64_t{1000}, std::uint64_t{1} << 32);
-  parser.add_option("--seconds", limits.seconds, "a frame is stopped after (120)");
-  parser.add_option("--subdivisions", limits.subdivisions, "at most (6)")->range(0, 6);
-  parser.add_option("--scale", limits.scale, "at most (128)")->range(1, 128);
+  parser.add_option("--seconds", limits.seconds,
+                    "seconds after which a frame is stopped (default: 120)");
+  parser.add_option("--subdivisions", limits.subdivisions, "most subdivisions (default: 6)")
+      ->range(0, 6);
+  parser.add_option("--scale", limits.scale, "largest image scale (default: 128)")->range(1, 128);
   if (const auto status = options.read(parser, arguments, true)) return *status;
   if (options.quick) {
     // Small, but with parts, so that every path runs.

@@ -137,9 +137,12 @@ OnCuda choose_on_cuda(const Row& row, MemoryAccount& memory) {
   // Throws for sizes of bins and tiles that the host refuses too.
   static_cast<void>(coverage.make(row.tuning, memory));
   if (coverage.name == coverages().front().name)
-    return {{}, {}, "'grouped' keeps its groups and bins in a core's cache: it is the CPU's", true};
+    return {{},
+            {},
+            "only the CPU has 'grouped', which keeps its groups and bins in a core's cache",
+            true};
   if (row.tuning.schedule == Schedule::persistent)
-    return {{}, {}, "the persistent schedule of 'binned' is the CPU's", true};
+    return {{}, {}, "only the CPU has the persistent schedule of 'binned'", true};
   return {coverage.name, visibility.name, {}};
 }
 
@@ -196,7 +199,8 @@ Renderer make_renderer(const RendererOptions& options, const Row& row) {
   DeviceChoice choice = choose_device(options.device);
   if (options.device == Device::automatic && choice.device == Device::cuda &&
       (row.rasterizer != "auto" || row.visibility != "auto"))
-    choice = {Device::threads, "a rasterizer or a visibility of the CPU was asked for"};
+    choice = {Device::threads,
+              "a rasterizer or a visibility was asked for; with 'auto' the CPU draws by it"};
   // The reference is plain C++ on one thread on every machine.
   const bool plain = row.rasterizer == kReference;
   auto make = [row](const DrawerOptions& how, MemoryAccount& memory,

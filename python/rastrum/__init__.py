@@ -23,8 +23,9 @@ from . import mpi
 
 __all__ = [
     "OUTPUTS", "ArgumentError", "ArgumentTypeError", "Camera", "ColorMapping", "Cylinders", "DeviceError", "Discs", "Error", "FileError",
-    "FormatError", "Hit", "Light", "Lines", "Material", "Mesh", "MissingOutputError", "NotFoundError", "OddInputWarning", "OutOfMemoryError", "Picture", "PictureIndexError", "Pictures", "Points",
-    "Renderer", "Scene", "Spheres", "Terrain", "Tubes", "UnsupportedError", "View", "as_scene", "color_maps", "crease_normals", "digest", "draw_behind", "load", "mpi", "orbit", "rasterize", "render",
+    "FormatError", "Hit", "Light", "Lines", "Material", "Mesh", "MissingOutputError", "NotFoundError", "OddInputWarning", "OutOfMemoryError", "Picture",
+    "PictureIndexError", "Pictures", "Points", "Renderer", "Scene", "Spheres", "Terrain", "Tubes", "UnsupportedError", "View", "as_scene",
+    "color_maps", "crease_normals", "digest", "draw_behind", "load", "mpi", "orbit", "rasterize", "render",
     "trimesh_viewer", "views4",
 ]
 

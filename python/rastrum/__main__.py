@@ -21,28 +21,30 @@ def main(arguments=None):
     parser = argparse.ArgumentParser(prog="python -m rastrum", description="Pictures of meshes and point clouds.",
                                      epilog="example: python -m rastrum views part.stl -o views.png")
     commands = parser.add_subparsers(dest="command", required=True)
-    for name, about in (("render", "one picture"), ("views", "front, right, top and three-quarter view"), ("video", "once around"),
+    for name, about in (("render", "one picture"), ("views", "front, right, top and three-quarter view"), ("video", "a turn around the files"),
                         ("info", "what is in the files")):
         command = commands.add_parser(name, help=about, description=about)
-        command.add_argument("files", nargs="+", metavar="FILE", help=".obj .ply .stl .off .gltf .glb .npy, and what vtk, meshio and trimesh read")
+        command.add_argument("files", nargs="+", metavar="FILE",
+                             help=".obj .ply .stl .off .gltf .glb .npy, and the files that vtk, meshio and trimesh read")
         if name != "info":
             command.add_argument("-o", "--output", required=True,
                                  help=".mp4, .gif, .png (animated) or frame_%%04d.png" if name == "video" else ".png")
             command.add_argument("--size", type=_size, default=(1280, 720) if name != "views" else (512, 512),
-                                 help="WxH")
+                                 help="size of the picture in pixels, WxH")
             command.add_argument("--shader", default="auto",
-                                 help="auto: a picture to show, with studio lights, occlusion and four samples")
-            command.add_argument("--background", default=None, help="#rrggbb or a name (transparent)")
+                                 help="a shader; auto (the default): a picture to show, with studio lights, occlusion and four samples")
+            command.add_argument("--background", default=None, help="#rrggbb or a name (default: transparent)")
             command.add_argument("--scalars", metavar="NAME",
-                                 help="colours by numbers of the files (info lists them), or by x, y, z, distance")
-            command.add_argument("--cmap", default="viridis", metavar="NAME", help="their colours (viridis)")
-            command.add_argument("--range", type=_range, metavar="LOW,HIGH", help="of the first and last colour (least, greatest)")
+                                 help="colour by these numbers of the files (info lists their names), or by x, y, z or distance")
+            command.add_argument("--cmap", default="viridis", metavar="NAME", help="colours of --scalars (default: viridis)")
+            command.add_argument("--range", type=_range, metavar="LOW,HIGH",
+                                 help="numbers of the first and the last colour (default: the least and the greatest)")
         if name == "render":
-            command.add_argument("--view", default="iso", help="front, back, left, right, top, bottom, iso (iso)")
+            command.add_argument("--view", default="iso", help="front, back, left, right, top, bottom, iso (default: iso)")
         if name == "video":
-            command.add_argument("--frames", type=int, default=72, help="pictures of the whole turn (72)")
-            command.add_argument("--fps", type=float, default=24.0, help="(24)")
-            command.add_argument("--elevation", type=float, default=25.0, help="degrees (25)")
+            command.add_argument("--frames", type=int, default=72, help="pictures of the whole turn (default: 72)")
+            command.add_argument("--fps", type=float, default=24.0, help="pictures a second (default: 24)")
+            command.add_argument("--elevation", type=float, default=25.0, help="degrees from which the camera looks down (default: 25)")
     arguments = list(sys.argv[1:] if arguments is None else arguments)
     if "--range" in arguments[:-1]:  # or argparse takes -5,5 for an option
         at = arguments.index("--range")

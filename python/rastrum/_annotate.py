@@ -19,7 +19,7 @@ def _bar(options):
         return None
     title, unit, nan = options["title"], options["unit"], options["nan"]
     if not isinstance(title, str) or not isinstance(unit, str) or not isinstance(nan, bool):
-        raise ArgumentTypeError("annotate['bar']: title and unit are words, nan is True or False")
+        raise ArgumentTypeError("annotate['bar']: title and unit must be strings, nan must be True or False")
     return title, unit, nan
 
 
@@ -48,13 +48,13 @@ def annotations(wanted):
     title, captions = wanted.get("title") or "", wanted.get("captions") or ()
     captions = [captions] if isinstance(captions, str) else list(captions)
     if not isinstance(title, str) or not all(isinstance(c, str) for c in captions):
-        raise ArgumentTypeError("annotate: title and captions are words")
+        raise ArgumentTypeError("annotate: title and captions must be strings")
     bar = effects.get("bar", {})
     for text in [title, *captions, *(v for v in bar.values() if isinstance(v, str))]:
         try:
             text.encode()
         except UnicodeEncodeError as e:
-            raise ArgumentError(f"annotate: {text!r} has half of a surrogate pair, which is no letter") from e
+            raise ArgumentError(f"annotate: {text!r} has half of a surrogate pair, which is not a letter") from e
     if not effects and not title and not captions:
         return None
 

@@ -44,12 +44,12 @@ def _numbers(value, name):
             return np.from_dlpack(value)
         except (BufferError, RuntimeError, TypeError) as e:
             if _is_elsewhere(value):
-                raise ArgumentTypeError(f"{name}: not in this process's memory ({e}); of a device's, take .cpu()") from e
-            raise ArgumentTypeError(f"{name}: NumPy has no such array ({e}); of torch, take .float() or .to_dense()") from e
+                raise ArgumentTypeError(f"{name}: is not in this process's memory ({e}); take .cpu() of an array on a device") from e
+            raise ArgumentTypeError(f"{name}: NumPy cannot take this array ({e}); take .float() or .to_dense() of a torch tensor") from e
     try:
         return np.asarray(value)
     except (ValueError, TypeError) as e:
-        raise ArgumentTypeError(f"{name}: no array ({e})") from e
+        raise ArgumentTypeError(f"{name}: cannot become an array ({e})") from e
 
 
 def _is_elsewhere(value):
@@ -90,7 +90,7 @@ def scalars(value, name, copy=None):
     if copy is True:
         array = array.copy()
     elif not _in_place(array):
-        array = _copied(array, name, copy, "they lie at no whole multiples of their size", np.ascontiguousarray)
+        array = _copied(array, name, copy, "their distances are no whole multiples of their size", np.ascontiguousarray)
     return array
 
 
@@ -99,7 +99,7 @@ def floats(value, name, columns, copy=None, normalized=False):
     with `normalized` integers of 8 and 16 bits too; other numbers are copied to float64."""
     array = _numbers(value, name)
     if array.dtype.kind not in "fiub" or array.dtype.kind == "b" and not normalized:
-        raise ArgumentTypeError(f"{name}: an array of {array.dtype} is none of numbers")
+        raise ArgumentTypeError(f"{name}: must be an array of numbers, not of {array.dtype}")
     if columns is None:
         if array.ndim == 2 and array.shape[1] == 1:
             array = array[:, 0]
@@ -123,7 +123,7 @@ def integers(value, name, copy=None):
     array = _numbers(value, name)
     if array.dtype.kind not in "iu":
         if array.size or array.dtype.kind != "f":
-            raise ArgumentTypeError(f"{name}: indices are integers, these are {array.dtype}")
+            raise ArgumentTypeError(f"{name}: indices must be integers, not {array.dtype}")
         array = array.astype(np.int64)  # [] has no type of its own
     if array.ndim not in (1, 2):
         raise ArgumentError(f"{name}: the shape is {array.shape} and must be (N,) or (M, K)")
@@ -153,7 +153,7 @@ def colors(value, copy=None):
 def _warn_of_dark(name, most, dtype):
     """Warns of integers that look like floats from 0 to 1, or like integers of fewer bits."""
     if dtype.kind in "iu" and 0 < most <= (1 if dtype.itemsize == 1 else 255):
-        warn(f"{name}: of {dtype}, where {np.iinfo(dtype).max} is full intensity, but the greatest is {most}, which is nearly black; use "
+        warn(f"{name}: {np.iinfo(dtype).max} is full intensity in {dtype}, but the greatest is {most}, which is nearly black; use "
              "floats for 0 to 1" + ("" if dtype.itemsize == 1 else ", or uint8 for 0 to 255"))
 
 
@@ -186,7 +186,7 @@ def color(value, name):
         if found is None:
             import difflib  # as other modules that few calls need: imports are a script's time
             near = difflib.get_close_matches(value.lower(), _r.color_names(), 1)
-            raise ArgumentError(f"{name}: {value!r} is no colour; take '#rrggbb' or a name of CSS's" +
+            raise ArgumentError(f"{name}: {value!r} is no colour; take '#rrggbb' or a name of CSS" +
                                 (f", {near[0]!r} perhaps" if near else ""))
         return tuple(v / 255 for v in found)
     if isinstance(value, (bool, bytes)):

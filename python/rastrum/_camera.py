@@ -67,9 +67,9 @@ def _is_transposed(m):
 
 
 class Camera:
-    """Where it stands and what it sees. Right-handed, x right, y up, looking along its -z; angles in degrees.
+    """A camera: where it stands and what it sees. Right-handed, x right, y up, looking along its -z; angles in degrees.
 
-    Made by look_at, orthographic, fit, opencv and opengl. docs/cameras.md compares the conventions.
+    Make one by look_at, orthographic, fit, opencv or opengl. docs/cameras.md compares the conventions.
 
     near, far: nothing nearer or farther is drawn, in the world's units. None: near is a thousandth of the scene's radius or
     of the distance to it, whichever is more, but at most a hundredth of the distance to the target (opencv, which has no
@@ -87,13 +87,13 @@ class Camera:
     @staticmethod
     @raises_errors
     def look_at(eye, target=(0, 0, 0), up=(0, 1, 0), *, fov=60.0, near=None, far=math.inf):
-        """From `eye` to `target`. fov: across the smaller side of the picture."""
+        """Looks from `eye` to `target`. fov: the field of view across the smaller side of the picture."""
         return Camera._standing(eye, target, up, _fov(fov), None, near, far)
 
     @staticmethod
     @raises_errors
     def orthographic(eye, target=(0, 0, 0), up=(0, 1, 0), *, height, near=None, far=None):
-        """Parallel projection; height: world units across the smaller side of the picture."""
+        """Has a parallel projection. height: world units across the smaller side of the picture."""
         return Camera._standing(eye, target, up, 60.0, number(height, "height"), near, far)
 
     @staticmethod
@@ -111,8 +111,8 @@ class Camera:
     @staticmethod
     @raises_errors
     def fit(what, view="front", *, up=(0, 1, 0), fov=60.0, orthographic=False):
-        """All of `what` as large as the picture can have it. view: front, back, left, right, top, bottom, iso, or
-        where the eye stands as seen from the middle of it, (x, y, z)."""
+        """Shows the whole of `what`, as large as it fits into the picture. view: front, back, left, right, top, bottom, iso, or
+        the direction (x, y, z) from the middle of `what` to the eye."""
         scene, up, fov = as_scene(what), _triple(up, "up"), _fov(fov)
         if isinstance(view, str):
             direction, up = _r.view(view, up)
@@ -123,8 +123,8 @@ class Camera:
     @staticmethod
     @raises_errors
     def opencv(K, R=None, t=None, *, near=None, first_centre=0.0):
-        """A camera from OpenCV's intrinsics (3, 3) in pixels and a pose from world to camera (x right, y down,
-        z ahead). first_centre: u and v of the centre of the top left pixel, 0.5 where cx = W / 2 is the middle."""
+        """Makes a camera from OpenCV's intrinsics (3, 3) in pixels and a pose from world to camera (x right, y down,
+        z ahead). first_centre: u and v at the centre of the top left pixel; take 0.5 if cx = W / 2 is the middle."""
         k = _numbers(K, "K")
         if k.dtype.kind not in "fiu" or k.shape != (3, 3):
             raise ArgumentError(f"K: must be (3, 3) numbers, not {k.shape} of {k.dtype}")
@@ -149,11 +149,11 @@ class Camera:
     @staticmethod
     @raises_errors
     def opengl(projection, view=None, *, depth="opengl"):
-        """A camera from 4 x 4 matrices that multiply columns: projection @ view takes the world to clip space.
-        depth: what the near and far plane become: opengl (-1, 1), zero_to_one (0, 1) or reversed (1, 0)."""
+        """Makes a camera from 4 x 4 matrices that multiply columns: projection @ view takes the world to clip space.
+        depth: the depths of the near and the far plane: opengl (-1, 1), zero_to_one (0, 1) or reversed (1, 0)."""
         clip = matrix(projection, "projection")
         if clip.shape == (4, 4) and _is_transposed(clip):
-            raise ArgumentError("projection: multiplies rows; vectors are columns here: take its transpose, .T")
+            raise ArgumentError("projection: is a matrix that multiplies rows, but vectors are columns here: take its transpose, .T")
         if view is not None:
             clip = product(clip, placement(view, "view"))
         made = _r.of_matrix(clip, depth)
@@ -162,15 +162,15 @@ class Camera:
 
 @raises_errors
 def orbit(what, n, *, elevation=25.0, up=(0, 1, 0), fov=60.0):
-    """n cameras around all of `what` at one distance, so that it keeps its size; counter-clockwise as seen from above,
-    `elevation` degrees up."""
+    """Returns n cameras around the whole of `what`, at one distance, so that it keeps its size. They go counter-clockwise as
+    seen from above and stand `elevation` degrees up."""
     if isinstance(n, bool) or not isinstance(n, (int, np.integer)):
         raise ArgumentTypeError(f"n: must be a whole number of cameras, not {n!r}")
     if n < 1:
-        raise ArgumentError(f"n: {n!r} cameras; there is at least one")
+        raise ArgumentError(f"n: must be at least 1, not {n!r}")
     fov, elevation = _fov(fov), number(elevation, "elevation")
     if not math.isfinite(elevation):
-        raise ArgumentError(f"elevation: {elevation} degrees are no height")
+        raise ArgumentError(f"elevation: must be a finite number of degrees, not {elevation}")
     scene, up = as_scene(what), np.asarray(_triple(up, "up"))
     if not up.any():
         raise ArgumentError("up: (0, 0, 0) is no direction")
@@ -195,7 +195,8 @@ def orbit(what, n, *, elevation=25.0, up=(0, 1, 0), fov=60.0):
 
 @raises_errors
 def as_camera(camera, scene):
-    """A Camera, a (4, 4) from world to OpenGL's clip space, or None: all of the scene from the front."""
+    """Returns the Camera for a Camera, for a (4, 4) from world to OpenGL's clip space, or for None, which sees the whole scene
+    from the front."""
     if camera is None:
         return Camera.fit(scene)
     if isinstance(camera, Camera):

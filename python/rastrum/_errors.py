@@ -5,27 +5,27 @@ import functools
 
 
 class Error(Exception):
-    """Whatever Rastrum refuses; the message names the argument, file or place, and what to do."""
+    """Rastrum refuses something. The message names the argument, file or place, and says what to do."""
 
 
 class ArgumentError(Error, ValueError):
-    """A value that is out of range, or does not fit the others."""
+    """A value is out of range, or does not fit the others."""
 
 
 class ArgumentTypeError(Error, TypeError):
-    """A thing of a kind that is not drawn."""
+    """An argument has a type that is not drawn or not taken."""
 
 
 class NotFoundError(Error, FileNotFoundError):
-    """A file that is not there."""
+    """A file does not exist."""
 
 
 class MissingOutputError(Error, AttributeError):
-    """A field of a picture that was not asked for."""
+    """A picture does not have this field, because it was not asked for."""
 
 
 class PictureIndexError(Error, IndexError):
-    """A picture that is not among these."""
+    """There is no picture with this number."""
 
 
 class FileError(Error, OSError):
@@ -33,23 +33,23 @@ class FileError(Error, OSError):
 
 
 class FormatError(Error, ValueError):
-    """A file that is not what it claims to be."""
+    """A file is damaged, or is not what its name says."""
 
 
 class UnsupportedError(Error, NotImplementedError):
-    """Valid, but outside of what Rastrum does."""
+    """The input is valid, but Rastrum does not do this."""
 
 
 class OutOfMemoryError(Error, MemoryError):
-    """The message says what was asked for."""
+    """There is not enough memory. The message says how much was asked for."""
 
 
 class DeviceError(Error, RuntimeError):
-    """A backend or instruction set that is not here."""
+    """A device or an instruction set is not available."""
 
 
 class OddInputWarning(UserWarning):
-    """Input that is drawn, but hardly meant so."""
+    """The input is drawn, but is hardly meant so."""
 
 
 def warn(message):

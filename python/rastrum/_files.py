@@ -38,4 +38,4 @@ def refuse_inputs(path, inputs):
     for read in inputs:
         with contextlib.suppress(OSError):
             if os.path.samefile(path, read):
-                raise ArgumentError(f"{path}: was read for this picture, and would be lost: name another file")
+                raise ArgumentError(f"{path}: was read for this picture and would be overwritten: name another file")

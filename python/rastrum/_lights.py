@@ -33,11 +33,11 @@ def display(linear):
 
 
 class Light:
-    """A light; made by one of its six functions.
+    """A light. Make one by ambient, hemisphere, directional, point, spot or environment.
 
-    color: of a display, as colours everywhere. intensity: how bright it makes a white, matt surface that faces it (a
-    unit away, where it has a position). of_camera: places and directions are the camera's, x to the right, y up, z
-    towards the viewer. Directions are those in which light travels.
+    color: a display colour, as everywhere. intensity: how bright the light makes a white, matt surface that faces it (from one
+    unit away if the light has a position). of_camera: places and directions are relative to the camera, x to the right, y up,
+    z towards the viewer. A direction is the one in which the light travels.
     """
 
     @raises_errors
@@ -51,40 +51,40 @@ class Light:
     @classmethod
     @names_arguments
     def ambient(cls, **look):
-        """From everywhere."""
+        """Shines from everywhere."""
         return cls("ambient", **look)
 
     @classmethod
     @names_arguments
     def hemisphere(cls, up=(0, 1, 0), below="black", **look):
-        """Its colour from `up`, `below` from the other side, linear between."""
+        """Shines with its colour from `up` and with `below` from the other side; between them the colour is linear."""
         return cls("hemisphere", direction=up, below=below, **look)
 
     @classmethod
     @names_arguments
     def directional(cls, direction=(0, 0, -1), **look):
-        """Parallel, from far away."""
+        """Shines in parallel rays from far away."""
         return cls("directional", direction=direction, **look)
 
     @classmethod
     @names_arguments
     def point(cls, position, range=math.inf, **look):
-        """Weaker by the square of the distance, nothing beyond `range`."""
+        """Shines from a place. The light fades by the square of the distance and ends at `range`."""
         return cls("point", position, range=range, **look)
 
     @classmethod
     @names_arguments
     def spot(cls, position, direction, inner=0.0, outer=45.0, range=math.inf, **look):
-        """A point light in a cone: full up to `inner` degrees from its axis, nothing beyond `outer`."""
+        """Shines from a place in a cone: fully up to `inner` degrees from the axis, and not beyond `outer`."""
         return cls("spot", position, direction, range=range, inner=inner, outer=outer, **look)
 
     @classmethod
     @raises_errors
     def environment(cls, picture, up=(0, 1, 0), turn=0.0, *, color="white", intensity=1.0, of_camera=False):
-        """A picture of all that is around: a path (.hdr, .exr, .png, .jpg), "sky", "room", or an array (H, 2 H, 3), linear.
+        """Shines from a picture of the whole surroundings: a path (.hdr, .exr, .png, .jpg), "sky", "room", or an array (H, 2 H, 3), linear.
 
-        Its top row is at `up`, its middle at -z, turned by `turn` degrees counter-clockwise seen from `up`. Matt
-        surfaces gather it, `material` mirrors it. Making one takes about 0.3 s of a core: keep it for many frames.
+        Its top row lies at `up` and its middle at -z, turned by `turn` degrees counter-clockwise as seen from `up`. Matt
+        surfaces gather its light; the shader material also mirrors it. Making one takes a core about 0.3 s: keep it for many frames.
         """
         look = (_three(up, "up"), math.radians(number(turn, "turn")), _linear(color, "color"), number(intensity, "intensity"), bool(of_camera))
         if isinstance(picture, (str, os.PathLike)):
@@ -110,7 +110,7 @@ def lights(wanted, scene=None):
         if isinstance(light, Light):
             made.append(light._made)
         elif not isinstance(light, str):
-            raise ArgumentTypeError(f"lights: {light!r} is no rastrum.Light")
+            raise ArgumentTypeError(f"lights: {light!r} is neither a name nor a rastrum.Light")
         elif light == "headlight":
             made.append(_r.headlight())
         elif light == "studio":

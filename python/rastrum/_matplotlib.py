@@ -35,12 +35,12 @@ def camera_of(ax):
 
 
 def draw_behind(ax, what, **frame):
-    """Draws `what` into a matplotlib Axes3D, in its data coordinates, in front of panes and grid and behind all that is
-    plotted; anew whenever the figure is, so that it turns and zooms with the axes.
+    """Draws `what` into a matplotlib Axes3D, in its data coordinates, in front of panes and grid and behind everything that is
+    plotted. It is drawn again whenever the figure is, so that it turns and zooms with the axes.
 
-    what, frame: as of render, whose size and camera are the axes'; samples is 4 and lights studio unless given.
-    Axes must be linear. Returns the artist: remove() takes it away again. Raises ArgumentTypeError where `ax` has no
-    three dimensions.
+    what, frame: as in render, but size and camera are those of the axes; samples is 4 and lights studio unless given.
+    The axes must be linear. Returns the artist, whose remove() takes it away again. Raises ArgumentTypeError if `ax` is not
+    three-dimensional.
     """
     if not hasattr(ax, "get_proj"):
         raise ArgumentTypeError(f"ax: must be a matplotlib Axes3D (projection='3d'), not {type(ax).__name__}")

@@ -13,21 +13,21 @@ _MOST = 1 << 24
 
 @raises_errors
 def rasterize(pos, tri, resolution, ranges=None, *, out=None, copy=None, threads=None):
-    """(N, H, W, 4) of float32: u, v, z/w and the number of the triangle + 1, zeros where nothing is.
+    """Returns (N, H, W, 4) of float32: u, v, z/w and the number of the triangle + 1, zeros where nothing is.
 
-    pos: (N, V, 4) of clip space as OpenGL has it (-w <= x, y, z <= w), of float32 or float64; one picture each; or
-    (V, 4): one picture, with ranges one each. tri: (T, 3) of any integer type. resolution: (height, width). ranges: (N, 2),
-    first triangle and number of triangles of each picture. u, v: perspective-correct weights of the first and second
-    corner. Row 0 is that of y = -w, as nvdiffrast and OpenGL have it; out[:, ::-1] has the top first. Both sides are drawn,
-    of equal depths the first triangle; nothing is at the far plane and beyond. No gradients.
-    out: an array to be filled. copy: as Mesh. Raises rastrum.Error of the natural class.
+    pos: vertices in OpenGL's clip space (-w <= x, y, z <= w), float32 or float64; (N, V, 4): one picture for each N; (V, 4):
+    one picture, or with ranges one for each range. tri: (T, 3) of any integer type. resolution: (height, width). ranges: (N, 2),
+    the first triangle and the number of triangles of each picture. u, v: perspective-correct weights of the first and second
+    corner. Row 0 lies at y = -w, as in nvdiffrast and OpenGL; out[:, ::-1] has the top first. Both sides are drawn.
+    At equal depths the first triangle wins. Nothing is drawn at the far plane and beyond. There are no gradients.
+    out: an array that is filled. copy: as Mesh. Raises rastrum.Error of the natural class.
     """
     positions = _positions(pos, copy)
     corners = integers(tri, "tri", copy)
     if corners.ndim != 2 or corners.shape[1] != 3:
         raise ArgumentError(f"tri: the shape is {corners.shape} and must be (T, 3)")
     if len(corners) > _MOST:
-        raise ArgumentError(f"tri: {len(corners)} triangles; float32 numbers {_MOST} at most")
+        raise ArgumentError(f"tri: has {len(corners)} triangles, but float32 can number only {_MOST}")
     rows = _ranges(ranges, positions)
     height, width = _resolution(resolution)
     pictures = len(rows) if rows else len(positions)
@@ -46,7 +46,7 @@ def _positions(pos, copy):
     """(N, V, 4)"""
     array = _numbers(pos, "pos")
     if array.dtype.kind not in "fiu":
-        raise ArgumentTypeError(f"pos: an array of {array.dtype} is none of numbers")
+        raise ArgumentTypeError(f"pos: must be an array of numbers, not of {array.dtype}")
     if array.ndim not in (2, 3) or array.shape[-1] != 4:
         raise ArgumentError(f"pos: the shape is {array.shape} and must be (V, 4) or (N, V, 4)")
     if array.dtype not in (np.float32, np.float64) or not array.dtype.isnative:
@@ -58,7 +58,7 @@ def _positions(pos, copy):
         array = _copied(array, "pos", copy, "the numbers of a value lie apart", np.ascontiguousarray)
     array = array[np.newaxis] if array.ndim == 2 else array
     if len(array) == 0:
-        raise ArgumentError("pos: no picture at all")
+        raise ArgumentError("pos: has no picture; N must be at least 1")
     return array
 
 
@@ -66,12 +66,12 @@ def _ranges(ranges, positions):
     if ranges is None:
         return []
     if len(positions) != 1:
-        raise ArgumentError("ranges: belong to pos of shape (V, 4)")
+        raise ArgumentError("ranges: need pos of shape (V, 4)")
     array = integers(ranges, "ranges")
     if array.ndim != 2 or array.shape[1] != 2 or len(array) == 0:
         raise ArgumentError(f"ranges: the shape is {array.shape} and must be (N, 2)")
     if (array < 0).any():
-        raise ArgumentError("ranges: numbers below 0")
+        raise ArgumentError("ranges: must not have numbers below 0")
     return [(int(first), int(count)) for first, count in array]
 
 

@@ -73,7 +73,7 @@ def _meshio(path):
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
             return meshio.read(path)
     except ImportError as e:
-        raise UnsupportedError(f"{path}: meshio wants {e.name or e} for it, which is not installed") from e
+        raise UnsupportedError(f"{path}: meshio needs {e.name or e} for it, which is not installed") from e
     except (Exception, SystemExit) as e:  # of any kind, by reader
         why = (" ".join(said.getvalue().split()) if isinstance(e, SystemExit) else
                f"nothing is known of {e}" if isinstance(e, KeyError) else str(e))
@@ -87,7 +87,7 @@ def _vtk(path, module, reader):
         from vtkmodules.vtkCommonCore import vtkStringOutputWindow, vtkOutputWindow
         from vtkmodules.vtkFiltersGeometry import vtkCompositeDataGeometryFilter, vtkGeometryFilter
     except ImportError as e:
-        raise UnsupportedError(f"{path}: the vtk wheel reads it, which is not installed (pip install rastrum[vtk])") from e
+        raise UnsupportedError(f"{path}: needs the vtk wheel to be read, which is not installed (pip install rastrum[vtk])") from e
     # VTK's messages go into the exception, not to stderr.
     said, before = vtkStringOutputWindow(), vtkOutputWindow.GetInstance()
     vtkOutputWindow.SetInstance(said)

@@ -33,7 +33,7 @@ def digest(array):
     import hashlib
     array = np.ascontiguousarray(array)
     if array.dtype.kind not in "biuf":
-        raise ArgumentTypeError(f"digest: is of an array of numbers, as a picture's color, not of {array.dtype}")
+        raise ArgumentTypeError(f"digest: must be given an array of numbers, such as a picture's color, not one of {array.dtype}")
     if array.dtype.kind == "f" and np.isnan(array).any():
         array = array.copy()
         array.view(np.uint32)[np.isnan(array)] = 0x7FC00000
@@ -46,7 +46,7 @@ def _number_of_threads():
     given = os.environ.get("RASTRUM_NUM_THREADS", "")
     if given:
         if not given.isdigit() or int(given) < 1:
-            raise ArgumentError(f"RASTRUM_NUM_THREADS: {given!r} is no number of threads")
+            raise ArgumentError(f"RASTRUM_NUM_THREADS: must be a whole number from 1 on, not {given!r}")
         return int(given)
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     try:
@@ -66,8 +66,8 @@ def thread_count(threads):
 
 
 class Hit(typing.NamedTuple):
-    """The primitive under a pixel, and the place on it. barycentrics: of the three corners; position, normal: in the
-    world; depth: along the camera's axis; distance: from the eye; scalar: interpolated there, None without scalars."""
+    """The primitive under a pixel, and the place on it. barycentrics: the weights of its three corners. position, normal: in
+    the world. depth: along the camera's axis. distance: from the eye. scalar: interpolated there, None without scalars."""
     id: int
     instance: int
     face: int
@@ -90,7 +90,7 @@ class _Fields:
         if name in arrays:
             return arrays[name]
         if name in OUTPUTS:
-            raise MissingOutputError(f"{name}: not drawn; ask for it by outputs=({name!r}, ...)")
+            raise MissingOutputError(f"{name}: was not drawn; ask for it by outputs=({name!r}, ...)")
         raise AttributeError(name)
 
     def __dir__(self):
@@ -115,10 +115,10 @@ def _numbered(path, i):
 class Picture(_Fields):
     """One frame: its outputs as attributes, NumPy arrays with row 0 at the top.
 
-    color uint8 (H, W, 4), straight alpha; color_f32 float32, premultiplied; depth float32 (H, W), along the axis in
-    world units, 0 where nothing is; depth_raw reversed; distance from the eye; id, instance, face int32 (int64 from
-    2**31 primitives), -1 where nothing is; barycentrics (H, W, 2); normal, position, camera_normal (H, W, 3); albedo,
-    linear (H, W, 4); scalars float32 (H, W), the things' numbers, NaN where there are none. `stats` is a dict.
+    color: uint8 (H, W, 4), straight alpha. color_f32: float32, premultiplied. depth: float32 (H, W), along the axis in
+    world units, 0 where nothing is. depth_raw: reversed. distance: from the eye. id, instance, face: int32 (int64 from
+    2**31 primitives), -1 where nothing is. barycentrics: (H, W, 2). normal, position, camera_normal: (H, W, 3). albedo,
+    linear: (H, W, 4). scalars: float32 (H, W), the things' numbers, NaN where there are none. stats: a dict.
     """
 
     def __init__(self, arrays, stats, pick, files=()):
@@ -127,12 +127,12 @@ class Picture(_Fields):
 
     @raises_errors
     def pick(self, x, y):
-        """The Hit at pixel (x, y), or None. Looks at the scene as its arrays are now."""
+        """Returns the Hit at pixel (x, y), or None. It reads the scene's arrays as they are now."""
         return self._pick(int(x), int(y))
 
     def save(self, path, output=None):
-        """A .png of `color`, or a .npy of any output (the only one there is, or `color`). The file is there whole, or as it was
-        before. Raises if the scene was read from that file."""
+        """Writes a .png of `color`, or a .npy of one output (default: the only one, or `color`). If writing fails, the file
+        stays as it was before. Raises if the scene was read from that file."""
         path = os.fspath(path)
         refuse_inputs(path, self._files)
         if path.lower().endswith(".png"):
@@ -144,7 +144,7 @@ class Picture(_Fields):
         return self
 
     def pil(self):
-        """`color` as a PIL image."""
+        """Returns `color` as a PIL image."""
         from PIL import Image
         return Image.fromarray(self.color, "RGBA")
 
@@ -173,11 +173,12 @@ class Pictures(_Fields):
         if isinstance(i, slice):
             return Pictures({name: a[i] for name, a in self.arrays.items()}, self.stats[i], self._picks[i], self._files)
         if not -len(self) <= operator.index(i) < len(self):
-            raise PictureIndexError(f"there are {len(self)} pictures, and none has number {i}")
+            raise PictureIndexError(f"there are {len(self)} pictures, and none has the number {i}")
         return Picture({name: a[i] for name, a in self.arrays.items()}, self.stats[i], self._picks[i], self._files)
 
     def save(self, path, output=None):
-        """A picture each, where the name has a number (frame_%03d.png, counted from 0); else a .npy of all of one output."""
+        """Writes each picture to its own file if the name has a number (frame_%03d.png, counted from 0); else writes one output
+        of all pictures to a .npy."""
         path = os.fspath(path)
         if "%" in path:
             names = [_numbered(path, i) for i in range(len(self))]
@@ -196,10 +197,10 @@ class Pictures(_Fields):
         return self.sheet()._repr_png_() if "color" in self.arrays else None
 
     def sheet(self, columns=None):
-        """All colours side by side, one Picture."""
+        """Returns one Picture with all colours side by side."""
         n, h, w, _ = self.color.shape
         if n == 0:
-            raise ArgumentError("sheet: of no pictures")
+            raise ArgumentError("sheet: there are no pictures")
         columns = math.ceil(math.sqrt(n)) if columns is None else columns
         if isinstance(columns, bool) or not isinstance(columns, (int, np.integer)) or columns < 1:
             raise ArgumentError(f"columns: {columns!r} must be a whole number from 1 on")
@@ -236,9 +237,9 @@ class Renderer:
     """Draws frames, and keeps threads and memory between them. Several may draw at once, a thread each; one that is
     shared draws one frame after the other.
 
-    threads: None takes RASTRUM_NUM_THREADS or the cores that this process may use. memory_limit: bytes of scratch
-    beside meshes and pictures, 0 for no limit; what does not fit is drawn piece by piece. device: threads, serial,
-    cuda or auto. isa: scalar, sse4, avx2, avx512 or neon; None: the best there is; the picture is the same.
+    threads: None takes RASTRUM_NUM_THREADS or the cores that this process may use. memory_limit: the most bytes of memory
+    beside meshes and pictures, 0 for no limit; what does not fit at once is drawn piece by piece. device: threads, serial,
+    cuda or auto. isa: scalar, sse4, avx2, avx512 or neon, None takes the best that this machine has; the picture is the same.
     """
 
     @raises_errors
@@ -268,22 +269,24 @@ class Renderer:
     def render(self, what, camera=None, *, size=(1280, 720), outputs="color", shader="auto", background=None, samples=1,
                transparency="exact", cull="none", opacity=1.0, clip_planes=(), lights=None, shadows=False, shadow_size=0,
                shadow_distance=0.0, tone="none", exposure=0.0, environment_behind=False, annotate=(), out=None, progress=None):
-        """A Picture of `what` by one camera, Pictures by a sequence of cameras or an (N, 4, 4) array.
+        """Returns a Picture of `what` for one camera, or Pictures for a sequence of cameras or an (N, 4, 4) array.
 
-        what: as_scene has the list. camera: a Camera, a (4, 4), or None: all of it from the front. size: (W, H).
+        what: anything that as_scene takes. camera: a Camera, a (4, 4), or None: the whole scene from the front. size: (W, H).
         outputs: names of Picture's fields. shader: auto, flat, depth, normal, id, lambert, phong, material, wireframe.
         background: a colour, None: transparent. samples: 1, 4, 8 or 16 a pixel. transparency: exact, unsorted, none.
-        cull: none, back, front. clip_planes: rows (x, y, z, d) of the world; kept is x X + y Y + z Z + d >= 0.
-        lights: of lambert, phong and material: headlight, studio (key, fill, back and head light), file (those of glTF
-        files), Lights, a list of these; None: the fixed light of each. shadows: whether directional lights and spots have them.
-        shadow_size: the most texels across a shadow map, 0: the frame's size decides. shadow_distance: how far from the eye
-        shadows are drawn, 0: as far as the picture sees. tone, exposure: for material: none, reinhard, aces or neutral for
-        light brighter than white, after `exposure` stops. environment_behind: the environments among lights are seen where nothing is.
+        cull: none, back, front. clip_planes: rows (x, y, z, d); only what lies at x X + y Y + z Z + d >= 0 in the world is drawn.
+        lights: for the shaders lambert, phong and material: headlight, studio (key, fill, back and head light), file (the lights of
+        glTF files), a Light, or a list of these; None: each shader's fixed light. shadows: whether directional lights and spots
+        throw them. shadow_size: the largest width of a shadow map in texels, 0: the frame's size decides. shadow_distance: how
+        far from the eye shadows are drawn, 0: as far as the picture sees. tone, exposure: for material: none, reinhard, aces or
+        neutral shows light brighter than white, after `exposure` doublings. environment_behind: shows the environments among the
+        lights where nothing else is seen.
         annotate: what is drawn over the colours, by name, or {name: options}: "occlusion" (radius, in world units,
-        strength), "edl" (strength), "silhouettes", "edges" (angle, in degrees: creases and borders alone; width, px),
-        "axes", "bounds" and "bar" (of scalars: title, unit, nan: with the colour of what is no number; a camera of None leaves a margin for their numbers), "title", "captions" (a list), "text_scale".
-        out: {name: array} to be filled, (H, W, ...) or with a leading N. progress: called with (done, total) after each
-        frame, or True: a count on a terminal.
+        strength), "edl" (strength), "silhouettes", "edges" (angle, in degrees: only edges whose faces meet at
+        more, such as creases and borders; width, px), "axes", "bounds", "bar" (for scalars; title, unit, nan: True shows the
+        colour of missing numbers), "title", "captions" (a list), "text_scale". With camera=None a margin is left for "bounds".
+        out: {name: array}, filled in place, (H, W, ...) or with a leading N. progress: a function that is called with (done,
+        total) after each frame, or True to show a count on a terminal.
         Raises rastrum.Error of the natural class; KeyboardInterrupt in a frame leaves the arrays partly filled.
         """
         scene, made, frame, arrays, many, notes = _prepared(what, camera, size, outputs, shader, background, samples,
@@ -317,7 +320,7 @@ def _prepared(what, camera, size, outputs, shader, background, samples, transpar
     many = _is_many(camera)
     cameras = [as_camera(c, scene) for c in camera] if many else [as_camera(camera, scene)]
     if not cameras:
-        raise ArgumentError("camera: a sequence of none")
+        raise ArgumentError("camera: the sequence has no camera; give at least one")
     frame, (width, height) = _look(scene, size, shader, background, samples, transparency, cull, opacity, clip_planes, lights,
                                    shadows, shadow_size, shadow_distance, tone, exposure, environment_behind)
     ball = scene._made.ball() if any(c._asks for c in cameras) else None
@@ -327,7 +330,7 @@ def _prepared(what, camera, size, outputs, shader, background, samples, transpar
         made = [notes.with_room(c, scene._made, width, height) for c in made]
     arrays = _arrays(outputs, out, len(made), many, (height, width), scene.primitives)
     if notes is not None and not {"color", "color_f32"} & set(arrays):
-        raise ArgumentError("annotate: is drawn into color or color_f32; ask for it by outputs")
+        raise ArgumentError("annotate: is drawn into color or color_f32; ask for one of them by outputs")
     return scene, made, frame, arrays, many, notes
 
 
@@ -339,7 +342,7 @@ def _look(scene, size, shader, background, samples, transparency, cull, opacity,
         raise ArgumentTypeError(f"samples: must be 1, 4, 8 or 16, not {samples!r}")
     made = _lights(lights, scene._made)
     if shadows and not any(light.throws_shadows for light in made):
-        raise ArgumentError("shadows: only directional lights and spots have them, and there are none; take lights='studio', or a rastrum.Light")
+        raise ArgumentError("shadows: only directional lights and spots throw them, and there are none; take lights='studio', or a rastrum.Light")
     return _r.frame(width, height, _text(shader, "shader"), _text(cull, "cull"),
                     [0.0] * 4 if background is None else list(_color(background, "background")), number(opacity, "opacity", 0, 1),
                     _text(transparency, "transparency"), samples,
@@ -401,7 +404,7 @@ def _arrays(outputs, out, number, many, shape, primitives):
             wide = dtype is np.int32 and primitives > 0x7FFFFFFF
             arrays[name] = empty(expected, np.int64 if wide else dtype)
     if not arrays:
-        raise ArgumentError("outputs: nothing is asked for")
+        raise ArgumentError("outputs: is empty; ask for at least one")
     return arrays
 
 
@@ -420,13 +423,13 @@ def _kept(threads, device, memory_limit, isa):
 
 @names_arguments
 def render(what, camera=None, *, threads=None, device="threads", memory_limit=0, isa=None, **frame):
-    """One frame, or one a camera; Renderer.render has the parameters, Renderer these. A Renderer is kept for each
-    set of them."""
+    """Draws one frame, or one for each camera. Renderer.render describes `frame`, Renderer the other parameters. A Renderer is
+    kept for each set of these."""
     return _kept(threads, device, memory_limit, isa).render(what, camera, **frame)
 
 
 def views4(what, *, size=(512, 512), **frame):
-    """Front, right, top and three-quarter view on one sheet."""
+    """Returns one sheet with the front, right, top and three-quarter view."""
     scene = as_scene(what)
     cameras = [Camera.fit(scene, view) for view in ("front", "right", "top", "iso")]
     return render(scene, cameras, size=size, **frame).sheet(2)

@@ -12,17 +12,17 @@ from ._things import ColorMapping, Mesh, _Thing
 
 
 class Scene:
-    """Things drawn together, in this order: ids count their primitives one after the other.
+    """Things that are drawn together. ids count their primitives one after the other, in this order.
 
     A path may be "builtin:SHAPE" or "builtin:SHAPE?key=value&...", a procedural shape as the program has it (`rastrum make
     --help` lists them).
 
-    It may be kept: each frame draws its things with the places, looks and arrays that they have at that time.
+    A Scene may be kept: each frame draws its things with the places, looks and arrays that they have at that time.
 
     crease: meshes of files without normals are smooth where their faces meet at no more than this angle (degrees);
     180: everywhere; None: nowhere. scalars: the name of the files' numbers that become colours; x, y, z and distance are
-    computed if no file has them. cmap, clim: as for things. memory_limit: bytes of memory that a file may take beside 64
-    times its size (None: 1 GiB). allow_outside: whether files may name others outside of their folders.
+    computed if no file has them. cmap, clim: as for things. memory_limit: how many bytes of memory a file may take on top of
+    64 times its size (None: 1 GiB). allow_outside: whether files may name other files outside of their folders.
     """
 
     @raises_errors
@@ -108,7 +108,7 @@ class Scene:
         if not isinstance(scalars, str):
             raise ArgumentTypeError(f"scalars: must be a name for files, not {scalars!r}")
         if not self.files:
-            raise ArgumentError("scalars: names numbers of files, and there are none; a Mesh takes them itself")
+            raise ArgumentError("scalars: names the numbers of files, but there is no file; give a Mesh its scalars itself")
         if isinstance(cmap, ColorMapping) and clim is not None:
             raise ArgumentError("clim: the ColorMapping already has a range")
         mapping = cmap if isinstance(cmap, ColorMapping) else ColorMapping(cmap, clim)
@@ -126,7 +126,7 @@ class Scene:
 
     @property
     def warnings(self):
-        """Sentences about data that readers of files left out or found odd."""
+        """Sentences about data that the readers of files left out or found odd."""
         return list(self._made.warnings)
 
     @property
@@ -138,7 +138,7 @@ class Scene:
 
 
 def load(path, *, crease=40.0, scalars=None, cmap="viridis", clim=None, memory_limit=None, allow_outside=True):
-    """The scene of a file (.obj .ply .stl .off .gltf .glb, .npy of triangles; .vtp .vtu .vti .vts .vtr .vtk where the vtk wheel is installed,
+    """Returns the scene of a file (.obj .ply .stl .off .gltf .glb, .npy of triangles; .vtp .vtu .vti .vts .vtr .vtk where the vtk wheel is installed,
     and other files if trimesh is installed). The other parameters are those of Scene."""
     return Scene([path], crease=crease, scalars=scalars, cmap=cmap, clim=clim, memory_limit=memory_limit,
                  allow_outside=allow_outside)
@@ -150,7 +150,7 @@ def _flat(what, copy=None):
         yield what
         return
     if isinstance(what, Scene):
-        raise ArgumentTypeError("a Scene inside of another: give its things")
+        raise ArgumentTypeError("a Scene cannot hold another Scene: give the things of that one")
     elif (made := _others.things_of(what, copy)) is not None:
         yield from made
     elif isinstance(what, tuple) and len(what) == 2 and all(np.ndim(a) == 2 for a in what):
@@ -159,14 +159,14 @@ def _flat(what, copy=None):
         for thing in what:
             yield from _flat(thing, copy)
     else:
-        raise ArgumentTypeError(f"{type(what).__module__}.{type(what).__qualname__}: nothing that can be drawn; take a path, "
+        raise ArgumentTypeError(f"{type(what).__module__}.{type(what).__qualname__}: cannot be drawn; take a path, "
                                 "(vertices, faces), a rastrum.Mesh or its kin, a mesh or cloud of trimesh, PyVista, VTK, meshio or Open3D, a "
                                 "shape of build123d or CadQuery, or a list of these")
 
 
 @raises_errors
 def as_scene(what, copy=None):
-    """The Scene of a path, (vertices, faces), things of this package, meshes and scenes of trimesh, PyVista, VTK and
+    """Returns the Scene of a path, (vertices, faces), things of this package, meshes and scenes of trimesh, PyVista, VTK and
     Open3D, shapes of build123d and CadQuery, or a list of these. A rastrum.Scene is returned as it is."""
     if not isinstance(what, Scene):
         return Scene(what, copy)

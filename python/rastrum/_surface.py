@@ -100,5 +100,5 @@ def things_of(mesh, copy=None, scalars=None, cmap="viridis", clim=None):
         of_points = {} if at_points is None else {"scalars": at_points[some], **look}
         made.append(Points(positions[some], copy=copy, **of_points))
     if not made:
-        raise UnsupportedError("cells: of " + ", ".join(sorted({name for name, _ in blocks})) + " nothing is drawn")
+        raise UnsupportedError("cells: none of these types are drawn: " + ", ".join(sorted({name for name, _ in blocks})))
     return made

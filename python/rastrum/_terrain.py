@@ -37,18 +37,20 @@ def _arrays(heights, colors):
 
 
 class Terrain:
-    """A map of heights, (H, W) in cells, row 0 in the north; NaN is a hole. It is copied, and lit here. Or a file (.png,
-    .npy, .dem, .tif) as the program reads it. height_scale: cells that a unit of the heights is high, where the file does
-    not say and they are no cells; `clim`, bar and box have that unit, all else cells.
+    """A height map, which is lit once and drawn from any place.
 
-    colors: (h, w, 3 or 4) of uint8, of any size, stretched over the map, or of a file a .png or .jpg; None: by height,
-    with shaded slopes. sun: (azimuth clockwise from north, elevation) in degrees, None: (315, 35). shadows: none,
-    accumulated, sharp, soft; ambient: of a colour where no sun is; sun_radius: of soft shadows, degrees. filter: none,
-    bilinear, mip. tiling: how the map goes on beyond its edge: repeat, mirror, clamp, none; None: repeat, but none
-    for a .dem or .tif. threads: None takes RASTRUM_NUM_THREADS or the cores that this process may use.
-    lights: in the sun's place, as of Renderer.render, in the terrain's world: x, the height, y; shadows are then of the
-    directional ones. tone, exposure: none, reinhard, aces or neutral of that light, after `exposure` stops. cmap, clim:
-    heights as numbers that have colours, a ColorMapping or what that takes; in the place of `colors`.
+    heights: (H, W) in cells, row 0 in the north, NaN is a hole; they are copied. Or a file (.png, .npy, .dem, .tif), as the
+    program reads it. height_scale: how many cells high a unit of the heights is, if the heights are not in cells and the
+    file does not say so. `clim`, bar and box are in that unit, everything else in cells.
+
+    colors: (h, w, 3 or 4) of uint8, of any size, stretched over the map; for a file of heights a .png or .jpg; None: colours by
+    height, with shaded slopes. sun: (azimuth clockwise from north, elevation) in degrees, None: (315, 35). shadows: none,
+    accumulated, sharp, soft. ambient: the part of a colour that is left in the shade. sun_radius: the radius of the sun's disc
+    for soft shadows, in degrees. filter: none, bilinear, mip. tiling: what lies beyond the map's edge: repeat, mirror, clamp,
+    none; None: repeat, but none for a .dem or .tif. threads: None takes RASTRUM_NUM_THREADS or the cores that this process
+    may use. lights: replace the sun; they are those of Renderer.render, in the terrain's world (x, the height, y), and
+    directional lights then throw the shadows. tone, exposure: none, reinhard, aces or neutral shows that light, after
+    `exposure` doublings. cmap, clim: colour the ground by its heights, instead of `colors`; a ColorMapping, or a cmap for one.
     """
 
     @raises_errors
@@ -58,15 +60,15 @@ class Terrain:
         self._threads = thread_count(_number_of_threads() if threads is None else threads)
         made = _lights(lights)
         if made and sun is not None:
-            raise ArgumentError("sun: lights take its place; say it as one of them, rastrum.Light.directional")
+            raise ArgumentError("sun: lights take the sun's place; give the sun as one of them, by rastrum.Light.directional")
         if not made and (tone != "none" or exposure != 0):
-            raise ArgumentError("tone: is of lights, and there are none; the sun lights colours as a display shows them")
+            raise ArgumentError("tone: needs lights, and there are none; the sun lights colours as a display shows them")
         if cmap is not None and colors is not None:
-            raise ArgumentError("cmap: colours the ground by its heights; leave out colors, or this")
+            raise ArgumentError("cmap: colours the ground by its heights, but colors colours it, too: leave one of them out")
         if isinstance(cmap, ColorMapping) and clim is not None:
-            raise ArgumentError("clim: the ColorMapping has it")
+            raise ArgumentError("clim: the ColorMapping already has a range")
         if cmap is None and clim is not None:
-            raise ArgumentError("clim: is of a cmap")
+            raise ArgumentError("clim: needs a cmap")
         mapping = cmap if cmap is None or isinstance(cmap, ColorMapping) else ColorMapping(cmap, clim)
         if tiling is None:
             tiling = "none" if isinstance(heights, (str, os.PathLike)) and _r.ends_at_edge(os.fspath(heights)) else "repeat"
@@ -76,7 +78,7 @@ class Terrain:
         scale = None if height_scale is None else _number(height_scale, "height_scale")
         if isinstance(heights, (str, os.PathLike)):
             if colors is not None and not isinstance(colors, (str, os.PathLike)):
-                raise ArgumentTypeError("colors: of a file of heights they are a file, too")
+                raise ArgumentTypeError("colors: must be a file, too, if heights are a file")
             self._made = _r.lit_terrain_of_file(os.fspath(heights), None if colors is None else os.fspath(colors), scale, *light)
         else:
             self._made = _r.lit_terrain(*_arrays(heights, colors), scale, *light)
@@ -85,28 +87,29 @@ class Terrain:
 
     @property
     def heights(self):
-        """(lowest, highest), in cells"""
+        """The lowest and the highest height, in cells."""
         return self._made.lowest, self._made.highest
 
     @raises_errors
     def ground_at(self, x, y):
-        """The height of the ground there, as it is drawn near by; NaN in a hole."""
+        """Returns the height of the ground at (x, y), as it is drawn near by; NaN in a hole."""
         return self._made.ground_at(float(x), float(y))
 
     @raises_errors
     def render(self, position=None, *, altitude=None, angle=0.0, horizon=None, roll=0.0, clearance=None, size=(1280, 720),
                distance=800.0, fov=90.0, scale=0.0, projection="planar", sky=None, fog=None, depth=False,
                environment_behind=False, annotate=()):
-        """A Picture: `color`, and with depth=True `depth`, in cells along the view, 0 where the sky is.
+        """Returns a Picture with `color` and, with depth=True, `depth`, in cells along the view, 0 where the sky is.
 
-        position: (x, y) in cells, x east and y south (half of the width, 0.78 of the height). altitude: in cells (a tenth of
-        the relief above the highest). angle: 0 looks north, 90 west. horizon: its row (a quarter of the height). roll:
-        degrees counter-clockwise. clearance: lifts the camera to so much above the ground. distance: cells that are seen.
-        fov: across, degrees. scale: rows that a height of 1 takes at distance 1, 0: as lenses have it. projection:
-        planar, cylindrical. sky: a colour, None: one that dims with a low sun. fog: density a cell, or (density, start),
-        or (density, start, colour). environment_behind: the environments among the terrain's lights are seen where no
-        ground is, and fog fades to their horizon. annotate: as of Renderer.render, of "axes", "bounds", "bar" (with a cmap),
-        "title", "captions", "text_scale". The program's `terrain` draws the same bits.
+        position: (x, y) in cells, x east and y south (default: half of the width, 0.78 of the height). altitude: height of the
+        camera in cells (default: a tenth of the relief above the highest point). angle: 0 looks north, 90 west. horizon: the
+        row of the horizon (default: a quarter of the height). roll: degrees counter-clockwise. clearance: lifts the camera to so
+        many cells above the ground. distance: how far the picture sees, in cells. fov: the field of view across the picture, in
+        degrees. scale: how many rows a height of 1 takes at distance 1; 0: as many as columns in the middle. projection: planar,
+        cylindrical. sky: a colour, None: one that dims with a low sun. fog: density a cell, or (density, start), or (density,
+        start, colour). environment_behind: shows the environments among the terrain's lights where no ground is, and fog fades
+        to their horizon. annotate: as in Renderer.render, but only "axes", "bounds", "bar" (with a cmap), "title", "captions"
+        and "text_scale". The program's `terrain` draws the same bits.
         """
         notes = _annotations(annotate)
         width, height = _size(size)
@@ -138,7 +141,7 @@ class Terrain:
 
 
 def _no_pick(x, y):
-    raise UnsupportedError("pick: a terrain has no primitives; `depth` says how far it is")
+    raise UnsupportedError("pick: a terrain has no primitives; `depth` tells how far away the ground is")
 
 
 def _fog(fog):

@@ -59,8 +59,8 @@ class Material:
     """glTF's metallic-roughness surface.
 
     base_color, emissive: display colours ('#rrggbb', names, 3 or 4 numbers in [0, 1]). Textures: (H, W, 3 or 4)
-    of uint8, or a file (.png, .jpg), sRGB for base colour and emission; a Scene copies them when it first has them. metallic,
-    roughness, opacity: in [0, 1]; `opacity` multiplies the alpha of all that has it. Scenes draw changed fields.
+    of uint8, or a file (.png, .jpg), sRGB for base colour and emission. A Scene copies a texture when it first gets it. metallic,
+    roughness, opacity: in [0, 1]; `opacity` multiplies alpha. Fields may be changed: scenes draw them as they are.
     """
 
     @raises_errors
@@ -100,14 +100,15 @@ _ARGUMENT = {"map": "cmap", "range": "clim", "logarithmic": "log", "isoline_px":
 
 
 class ColorMapping:
-    """How numbers become colours; give one to several things, and one range holds for all of them.
+    """Says how numbers become colours. Several things that share one ColorMapping share its range.
 
-    cmap: a name (`color_maps()`; NAME_r is its reverse), a list of colours, or one of matplotlib's colormaps.
-    clim: (low, high), None: from the least to the greatest finite number. log: by factors. symmetric: 0 in the middle.
-    steps: so many colours. categories: numbers that have a colour each. below, above, nan: colours beyond the range and
-    of what is no number. opacity: (number, opacity) pairs, linear between. isolines: numbers where lines are drawn on
-    meshes, across lines and along axes, isoline_width pixels wide; or about how many, at round numbers of the range that
-    a Scene finds when it is made. The picture: docs/scalars.md.
+    cmap: a name (`color_maps()`; NAME_r is its reverse), a list of colours, or a colormap of matplotlib.
+    clim: (low, high), None: from the least to the greatest finite number. log: equal factors become equal steps of colour.
+    symmetric: puts 0 in the middle. steps: takes so many colours. categories: numbers that each get their own colour.
+    below, above: colours of numbers beyond the range. nan: the colour where there is no number. opacity: (number, opacity)
+    pairs, linear between them. isolines: numbers at which lines are drawn on meshes, across lines and along axes,
+    isoline_width pixels wide; or about how many lines, at round numbers of the range that a Scene finds when it is made.
+    docs/scalars.md has the details.
     """
 
     @raises_errors
@@ -146,7 +147,7 @@ class ColorMapping:
 
 
 def color_maps():
-    """The names of colour maps, without the reversed ones."""
+    """Returns the names of colour maps, without the reversed ones."""
     return list(_r.color_map_names())
 
 
@@ -163,7 +164,7 @@ def _map(cmap):
     try:
         colors = list(cmap)
     except TypeError:
-        raise ArgumentTypeError(f"cmap: must be a name, colours or a map of matplotlib's, not {cmap!r}") from None
+        raise ArgumentTypeError(f"cmap: must be a name, a list of colours or a colormap of matplotlib, not {cmap!r}") from None
     return [list(_color(c, "cmap")) for c in colors], False
 
 
@@ -196,16 +197,16 @@ _FIXED = (type(None), str, bool, int, float, np.generic)
 
 
 class _Thing:
-    """A geometry placed in the world, with a look of its own.
+    """A geometry placed in the world, with its own look.
 
-    color: stands for the geometry's colours. opacity in [0, 1]. transform: (4, 4) or (3, 4), object to world.
-    material: a Material. visible: what is not draws nothing and keeps its ids. id: what `instance` pictures hold of
-    it, its place in the scene by default. clip_planes: rows (x, y, z, d) in object space; kept is what has
-    x X + y Y + z Z + d >= 0. winding: counter_clockwise, clockwise or either.
+    color: replaces the geometry's colours. opacity: in [0, 1]. transform: (4, 4) or (3, 4), from object to world.
+    material: a Material. visible: False draws nothing, but keeps the ids. id: the number in `instance` pictures, by default
+    its place in the scene. clip_planes: rows (x, y, z, d) in object space; only what lies at x X + y Y + z Z + d >= 0 is
+    drawn. winding: counter_clockwise, clockwise or either.
     These may be changed, by assignment or in place: scenes read them for each frame.
 
-    scalars: numbers that become colours instead: one for all of it, or one a vertex, face, corner, point, sphere or
-    disc. cmap: a ColorMapping, or what that takes; clim: (low, high), its range.
+    scalars: numbers that become colours: one for the whole thing, or one for each vertex, face, corner, point, sphere or
+    disc. cmap: a ColorMapping, or a cmap for one; clim: (low, high), its range.
 
     Arrays are not copied where they can be drawn in place; copy=True always copies, copy=False raises
     ArgumentError with the reason where a copy would be needed. They are read anew for every frame.
@@ -261,7 +262,7 @@ class _Thing:
 
     @property
     def primitives(self):
-        """Triangles, points, segments, spheres, ...: what has an id."""
+        """The number of primitives (triangles, points, segments, spheres, ...); each has an id."""
         return self._geometry.primitives
 
 
@@ -272,7 +273,7 @@ def _colors(value, copy):
 def _positions(value, copy, name="positions"):
     array = floats(value, name, (3,), copy)
     if len(array) and not math.isfinite(array[0].sum()) and not np.isfinite(array).all(axis=1).any():
-        warn(f"{name}: none of the {len(array)} is finite, so nothing of it is drawn")
+        warn(f"{name}: none of the {len(array)} is finite, so nothing is drawn of this thing")
     return array
 
 
@@ -291,7 +292,7 @@ def _per(array, name, counts, said=None):
             raise ArgumentError(f"{name}: {n} values for {counts[said]} {_MANY[said]}")
         return said
     if len(fit) > 1 and name in ("colors", "scalars"):
-        raise ArgumentError(f"{name}: {n} values fit the {' or the '.join(_MANY[kind] for kind in fit)}; say it by "
+        raise ArgumentError(f"{name}: {n} values fit the {' or the '.join(_MANY[kind] for kind in fit)}; choose by "
                             f"per={' or per='.join(map(repr, fit))}")
     if not fit and n != 1:
         raise ArgumentError(f"{name}: {n} values for " + ", ".join(f"{count} {_MANY[kind]}" for kind, count in counts.items()))
@@ -309,8 +310,8 @@ class Mesh(_Thing):
     positions: (N, 3). indices: (M, 3) triangles or (M, 4) quads, a flat array of three a triangle, or, with
     `offsets` (F + 1), the corners of polygons one after the other; None: every three positions are a triangle.
     normals (K, 3), uv (K, 2), colors (K, 3 or 4; floats in [0, 1] or uint8): K is the number of vertices, faces or
-    corners. per: whose colors and scalars are, "vertex", "face" or "corner"; it must be said where two of these are as many
-    (normals and uv are then the vertices'). Shaded with face normals where it has none.
+    corners. per: what colors and scalars belong to, "vertex", "face" or "corner"; give it where two of these have the same
+    number (normals and uv then belong to the vertices). Without normals the mesh is shaded with face normals.
     """
 
     @raises_errors
@@ -329,7 +330,7 @@ class Mesh(_Thing):
                                         "(others: `offsets`)")
                 kind = "quads" if indices.shape[1] == 4 else "triangles"
         elif offsets is not None:
-            raise ArgumentError("offsets: want indices")
+            raise ArgumentError("offsets: need indices beside them")
         if _none(indices) or _none(offsets):
             positions, indices = positions[:0], indices.reshape(-1)[:0]
             offsets = None if offsets is None else np.zeros(1, np.int64)
@@ -354,8 +355,8 @@ class Mesh(_Thing):
 
     @raises_errors
     def prepare(self, threads=0):
-        """Makes the mesh ready for many pictures, and returns it: clusters of its triangles, which pictures leave out
-        where they are not seen. No picture changes by a bit. Takes about as long as two pictures of it.
+        """Sorts the triangles into clusters, so that pictures can leave out hidden ones, and returns the mesh. No picture changes
+        by a bit. It takes about as long as two pictures of the mesh.
 
         Positions and faces are copied: what changes in them later is not seen (other arrays are read anew for each
         picture). Scenes that were made of the mesh before draw it as it was. threads: 0: all.
@@ -381,7 +382,7 @@ def _one_or_each(value, name, copy):
 
 
 class Points(_Thing):
-    """Squares or discs of `size` pixels (a number, or one a point) about their positions (N, 3)."""
+    """Squares or discs of `size` pixels (a number, or one for each point) around positions (N, 3)."""
 
     @raises_errors
     def __init__(self, positions, *, size=3.0, round=True, normals=None, colors=None, copy=None, **look):
@@ -394,7 +395,7 @@ class Points(_Thing):
 
 class Lines(_Thing):
     """Lines of `width` pixels. indices: (M, 2) segments; None: positions in order are one polyline, or with `offsets`
-    (L + 1) several: line i goes through positions offsets[i] to offsets[i + 1]. colors: one a position."""
+    (L + 1) several: line i goes through positions offsets[i] to offsets[i + 1]. colors: one for each position."""
 
     @raises_errors
     def __init__(self, positions, indices=None, *, offsets=None, width=1.0, colors=None, copy=None, **look):
@@ -412,7 +413,7 @@ class Lines(_Thing):
 
 
 class Spheres(_Thing):
-    """Exact spheres about centers (N, 3); radius: a number, or one a sphere."""
+    """Exact spheres around centers (N, 3). radius: a number, or one for each sphere."""
 
     @raises_errors
     def __init__(self, centers, radius=1.0, *, colors=None, copy=None, **look):
@@ -423,7 +424,7 @@ class Spheres(_Thing):
 
 
 class Cylinders(_Thing):
-    """Cylinders between pairs of positions, cones where the radii of the two differ. indices: (M, 2)."""
+    """Cylinders between pairs of positions, or cones where the two radii differ. indices: (M, 2)."""
 
     @raises_errors
     def __init__(self, positions, indices=None, radius=1.0, *, caps=True, colors=None, copy=None, **look):
@@ -437,7 +438,7 @@ class Cylinders(_Thing):
 
 
 class Tubes(_Thing):
-    """Polylines with round joints and ends; offsets (L + 1) as Lines has them."""
+    """Polylines with round joints and ends. offsets: (L + 1), as in Lines."""
 
     @raises_errors
     def __init__(self, positions, offsets=None, radius=1.0, *, colors=None, copy=None, **look):
@@ -451,7 +452,7 @@ class Tubes(_Thing):
 
 
 class Discs(_Thing):
-    """Flat discs about centers (N, 3), their fronts where normals (N, 3) point to."""
+    """Flat discs around centers (N, 3). Their fronts face along normals (N, 3)."""
 
     @raises_errors
     def __init__(self, centers, normals, radius=1.0, *, colors=None, copy=None, **look):
@@ -463,14 +464,14 @@ class Discs(_Thing):
 
 @raises_errors
 def crease_normals(positions, indices, degrees=40.0):
-    """(3 M, 3) float32: a normal for each corner of (M, 3) triangles over (N, 3) positions, smooth where faces meet at no
-    more than so many degrees. Corners at one place count as one. As files without normals have them; `normals` of a Mesh.
+    """Returns (3 M, 3) float32: a normal for each corner of (M, 3) triangles over (N, 3) positions, smooth where faces meet at no
+    more than so many degrees. Corners at one place count as one. Files without normals get the same ones. Give the result to a Mesh as `normals`.
     """
     corners = integers(indices, "indices").reshape(-1)
     if corners.size % 3:
         raise ArgumentError(f"indices: {corners.size} corners are no whole number of triangles")
     if corners.size and not 0 <= corners.min() <= corners.max() < 2**32:
-        raise ArgumentError(f"indices: {corners.min()} to {corners.max()} are no indices of vertices")
+        raise ArgumentError(f"indices: {corners.min()} to {corners.max()} cannot be indices of vertices")
     normals = np.empty((corners.size, 3), np.float32)
     _r.crease_normals(np.ascontiguousarray(floats(positions, "positions", (3,)), np.float32), corners.astype(np.uint32),
                       float(degrees), normals)

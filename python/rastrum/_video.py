@@ -16,11 +16,11 @@ def check(path, size):
     """Throws what write() would, as far as it can be known before a picture is drawn."""
     if _NUMBERED.search(path):
         if not path.lower().endswith(".png"):
-            raise ArgumentError(f"{path}: pictures with a number are .png")
+            raise ArgumentError(f"{path}: a name with a number must end in .png")
         _numbered(path, 0)
     elif path.lower().endswith(".mp4"):
         if size[0] % 2 or size[1] % 2:
-            raise ArgumentError(f"{path}: MP4 wants an even width and height, not {size[0]}x{size[1]}")
+            raise ArgumentError(f"{path}: MP4 needs an even width and height, not {size[0]}x{size[1]}")
         _ffmpeg(path)
     elif path.lower().endswith((".gif", ".png")):
         _pil(path)
@@ -51,7 +51,7 @@ def _pil(path):
     try:
         from PIL import Image
     except ImportError as e:
-        raise UnsupportedError(f"{path}: PIL writes it, which is not installed (pip install pillow)") from e
+        raise UnsupportedError(f"{path}: needs PIL to be written, which is not installed (pip install pillow)") from e
     return Image
 
 
@@ -62,7 +62,7 @@ def _ffmpeg(path):
             import imageio_ffmpeg
             found = imageio_ffmpeg.get_ffmpeg_exe()
         except (ImportError, RuntimeError) as e:
-            raise UnsupportedError(f"{path}: ffmpeg writes it, which is not here (pip install imageio-ffmpeg)") from e
+            raise UnsupportedError(f"{path}: needs ffmpeg to be written, which is not here (pip install imageio-ffmpeg)") from e
     return found
 
 

@@ -128,7 +128,7 @@ class _Session:
             camera, = orbit(self.scene, 1, fov=30)
         made = as_camera(camera, self.scene)._for_size(self.size, self.scene)
         if made.has_matrix:
-            raise ArgumentError("camera: View turns look_at, orthographic and fit, not matrices")
+            raise ArgumentError("camera: View can turn cameras of look_at, orthographic and fit, but not matrices")
         self._home = made
         self.home()
 
@@ -191,7 +191,7 @@ def _widget(session):
         import anywidget
         import traitlets
     except ImportError as e:
-        raise UnsupportedError("View: wants anywidget, which is not installed (pip install rastrum[jupyter])") from e
+        raise UnsupportedError("View: needs anywidget, which is not installed (pip install rastrum[jupyter])") from e
 
     class Widget(anywidget.AnyWidget):
         _esm = pathlib.Path(__file__).with_name("_view.js").read_text(encoding="utf-8")
@@ -208,18 +208,19 @@ def _widget(session):
 
 
 class View:
-    """A widget for notebooks (pip install rastrum[jupyter]): drag to turn, with Shift or the middle button to pan, the
-    wheel zooms, a double click goes back to the beginning.
+    """A widget for notebooks (pip install rastrum[jupyter]). Drag to turn; drag with Shift or the middle button to pan. The
+    wheel zooms. A double click goes back to the beginning.
 
-    what, camera, frame: as render has them; the camera is one of look_at, orthographic or fit, None: one that sees
-    all of it however it turns. While it moves, pictures have as many pixels as are drawn within target_ms; the whole one follows. threads: of Renderer.
+    what, camera, frame: as in render. The camera is made by look_at, orthographic or fit; None: one that sees the whole scene,
+    however it turns. While it moves, pictures have as many pixels as can be drawn within target_ms; the whole picture
+    follows. threads: as in Renderer.
     """
 
     @raises_errors
     def __init__(self, what, camera=None, *, size=(800, 600), target_ms=33.0, threads=None, **frame):
         for name in frame:
             if name in ("outputs", "out", "progress"):
-                raise ArgumentTypeError(f"{name}: View shows colours")
+                raise ArgumentTypeError(f"{name}: View shows only colours; leave this out")
             if name not in inspect.signature(Renderer.render).parameters:
                 raise ArgumentTypeError(f"{name}: render has no such option")
         if not 1 <= float(target_ms) <= 10000:
@@ -234,7 +235,7 @@ class View:
 
     @property
     def camera(self):
-        """The Camera of what is seen, for render. Another one may be given: as the beginning."""
+        """The Camera of the shown picture, for render. Another one may be assigned; it becomes the beginning."""
         return self._session.camera
 
     @camera.setter
@@ -244,11 +245,11 @@ class View:
         self.update()
 
     def picture(self):
-        """The Picture of what is seen."""
+        """Returns the Picture that is shown, whole."""
         return self._session.draw()
 
     def update(self):
-        """Draws again: after arrays have changed in place."""
+        """Draws again. Call it after arrays have changed in place."""
         self._shown.send(*self._session.receive({}))
 
     def _repr_mimebundle_(self, **kwargs):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures of things that lie on several ranks of MPI, each drawn where it lies; the bits are those of one process that
-has them all.
+"""Pictures of things that lie on several ranks of MPI. Each thing is drawn where it lies. A picture has the same bits as one of
+a single process that has all of them.
 
     from mpi4py import MPI
     import rastrum as rr
@@ -186,7 +186,7 @@ def _ranks_of(comm, timeout):
     functions = ("rank", "size", "begin_phase", "max", "broadcast", "exchange_sizes", "exchange")
     if all(hasattr(comm, name) for name in functions):
         return _Kept(comm)
-    raise ArgumentTypeError(f"comm: must be a communicator of mpi4py's, or have what rastrum.mpi.Communicator has, not {comm!r}")
+    raise ArgumentTypeError(f"comm: must be a communicator of mpi4py, or have what rastrum.mpi.Communicator has, not {comm!r}")
 
 
 class _Together:
@@ -280,16 +280,16 @@ def _frame(frame):
 
 def render(comm, what, camera=None, *, parts=None, root=0, timeout=0.0, exchange="automatic", fragment_bytes=1 << 30,
            threads=None, device="threads", memory_limit=0, isa=None, **frame):
-    """The Picture (Pictures, of several cameras) of what all ranks of `comm` have, on rank `root`; None on the others.
+    """Returns the Picture (or Pictures) of the things of all ranks of `comm` on rank `root`, and None on the others.
     All ranks call it, with the same arguments except `what` and `out`, which is the root's. Arrays are drawn where they
     lie.
 
-    comm: a communicator of mpi4py's, or Ranks, or an object with the functions of Communicator. what: as rr.render; []
-    on a rank that has nothing. camera: None: all of it from the front; fit() has others. parts: the number of each
+    comm: a communicator of mpi4py, or Ranks, or an object with the functions of Communicator. what: as in rr.render; []
+    on a rank that has nothing. camera: None sees the whole from the front; fit() makes others. parts: the number of each
     instance of `what`; one process would draw all instances in rising order of these, each number once; None: rank 0's
-    come first, then rank 1's. timeout: as Ranks. exchange, fragment_bytes: docs/ranks_traffic.md. threads: None: this
-    rank's share of the machine's cores. The rest: as rr.render. Not drawn, and refused: another transparency than
-    "exact" or "none", environment_behind.
+    come first, then rank 1's. timeout: as in Ranks. exchange, fragment_bytes: docs/ranks_traffic.md. threads: None: this
+    rank's share of the machine's cores. The other parameters are those of rr.render. Transparency other than "exact" and
+    "none" is refused, and so is environment_behind.
 
     A failure on one rank is raised on all of them, with its number: "rank 3: ..."; Ctrl-C on one is KeyboardInterrupt
     on all, once the others have done their part. A picture's pick() is refused: the scene lies on other ranks, too.
@@ -311,7 +311,7 @@ def render(comm, what, camera=None, *, parts=None, root=0, timeout=0.0, exchange
 
         def prepare():
             if isinstance(root, bool) or not isinstance(root, (int, np.integer)) or not 0 <= root < ranks.size:
-                raise ArgumentError(f"root: {root!r} is no rank of {ranks.size}")
+                raise ArgumentError(f"root: must be a rank from 0 to {ranks.size - 1}, not {root!r}")
             numbers = parts
             if numbers is None:
                 numbers = range(sum(counts[:ranks.rank]), sum(counts[:ranks.rank + 1]))
@@ -331,12 +331,12 @@ def render(comm, what, camera=None, *, parts=None, root=0, timeout=0.0, exchange
         def look_at():
             cameras = [as_camera(c, scene) for c in camera] if many else [fitted or as_camera(camera, scene)]
             if not cameras:
-                raise ArgumentError("camera: a sequence of none")
+                raise ArgumentError("camera: the sequence has no camera; give at least one")
             arrays = {}
             if ranks.rank == root:
                 arrays = _arrays(o["outputs"], o["out"], len(cameras), many, size[::-1], primitives)
                 if notes is not None and not {"color", "color_f32"} & set(arrays):
-                    raise ArgumentError("annotate: is drawn into color or color_f32; ask for it by outputs")
+                    raise ArgumentError("annotate: is drawn into color or color_f32; ask for one of them by outputs")
             return [c._make(size, ball) for c in cameras], arrays
         cameras, arrays = together.alike(raises_errors(look_at))
         progress = _bar if o["progress"] is True and sys.stderr.isatty() else o["progress"] or None
@@ -352,7 +352,8 @@ def render(comm, what, camera=None, *, parts=None, root=0, timeout=0.0, exchange
 
 
 def fit(comm, what, view="front", *, up=(0, 1, 0), fov=60.0, orthographic=False, size=(1280, 720)):
-    """The Camera that sees all that the ranks of `comm` have, as Camera.fit: the same on each. For pictures of `size`."""
+    """Returns the Camera that sees the things of all ranks of `comm`, for pictures of `size`. It is made as Camera.fit does it,
+    and is the same on each rank."""
     with _r.DeferredInterrupt() as interrupt, _ranks_of(comm, 0) as ranks:
         together = _Together(ranks, interrupt)
         scene = together.alike(lambda: as_scene(what))

@@ -19,7 +19,7 @@ from ._render import digest
 
 
 def pytest_addoption(parser):
-    parser.addoption("--rr-update", action="store_true", help="take the pictures of rr_snapshot as they are now")
+    parser.addoption("--rr-update", action="store_true", help="keep the pictures of rr_snapshot as they are now")
 
 
 def _write(file, colors):
@@ -29,7 +29,7 @@ def _write(file, colors):
 
 @pytest.fixture
 def rr_snapshot(request):
-    """check(picture, name): compares digests of a Picture, or of an array, with what was taken."""
+    """Returns check(picture, name), which compares the digest of a Picture or an array with the one that was kept."""
     folder = pathlib.Path(request.node.path).parent
     book = folder / "rr_snapshots.json"
     # Pictures that were right, to be shown beside wrong ones; not to be committed.

@@ -86,9 +86,9 @@ ArrayView<T> values(const Array& array, const char* name) {
                        (kChannels == 4 ? "3 or 4" : std::to_string(kChannels)) + ")");
     channels = static_cast<int>(array.shape(1));
     if (array.shape(0) > 0 && array.stride(1) != 1)
-      refuse(
-          name,
-          "the numbers of a value lie apart; numpy.ascontiguousarray makes a copy that does not");
+      refuse(name,
+             "the numbers of a value lie apart; numpy.ascontiguousarray makes a copy in which they "
+             "do not");
   }
   const std::size_t count = array.shape(0);
   if (count == 0) return {};
@@ -112,7 +112,7 @@ ScalarView scalars(const Array& array, const char* name) {
 IndexView indices(const Array& array, const char* name) {
   const NumberType type = number_type(array, name);
   if (type == NumberType::float32 || type == NumberType::float64)
-    refuse(name, "indices are integers, these are " + text(array.dtype()));
+    refuse(name, "indices must be integers, not " + text(array.dtype()));
   if (array.ndim() != 1 && array.ndim() != 2)
     refuse(name, "the shape is " + shape_of(array) + " and must be (N,) or (M, K)");
   std::size_t count = array.shape(0);
@@ -122,7 +122,7 @@ IndexView indices(const Array& array, const char* name) {
     if (array.shape(1) == 1) stride = stride_bytes(array, 0, type);
     if (array.shape(0) > 1 && array.shape(1) > 1 &&
         stride_bytes(array, 0, type) != stride * static_cast<std::ptrdiff_t>(array.shape(1)))
-      refuse(name, "the rows lie apart; numpy.ascontiguousarray makes a copy whose do not");
+      refuse(name, "the rows lie apart; numpy.ascontiguousarray makes a copy in which they do not");
   }
   if (count == 0) return {};
   const ArrayBuffer buffer(array, type, 1, count, stride);

@@ -127,7 +127,7 @@ std::array<std::array<double, 4>, 4> inverse_of(const Array& array) {
 
 void bind_cameras(nb::module_& m) {
   using nb::arg;
-  nb::class_<Camera>(m, "Camera", "Where it stands and what it sees.")
+  nb::class_<Camera>(m, "Camera", "A camera: where it stands and what it sees.")
       .def_prop_ro("eye", [](const Camera& c) { return numbers(c.eye); })
       .def_prop_ro("target", [](const Camera& c) { return numbers(c.target); })
       .def_prop_ro("up", [](const Camera& c) { return numbers(c.up); })

@@ -208,7 +208,7 @@ void write_png(const std::string& file, const Array& pixels, int threads) {
       pixels.shape(0) > static_cast<std::size_t>(kMaxImageSize) ||
       pixels.shape(1) > static_cast<std::size_t>(kMaxImageSize) || pixels.stride(0) % 4 != 0)
     throw Error(Errc::invalid_argument,
-                "png: must be (H, W, 4) of uint8, a pixel behind the other");
+                "png: must be (H, W, 4) of uint8, with each row's pixels side by side");
   io::write_png(
       file,
       ImageView<const Rgba8>{static_cast<const Rgba8*>(pixels.data()),
@@ -230,7 +230,7 @@ class WholeFile {
 
  private:
   [[nodiscard]] io::AtomicFile& open() {
-    if (!file_) throw Error(Errc::invalid_argument, "the file is written, or given up");
+    if (!file_) throw Error(Errc::invalid_argument, "the file is already written or given up");
     return *file_;
   }
   std::optional<io::AtomicFile> file_;

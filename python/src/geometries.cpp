@@ -24,7 +24,7 @@ Per per_of(const std::string& name) {
   if (name == "corner") return Per::corner;
   if (name == "face") return Per::face;
   if (name == "mesh") return Per::mesh;
-  throw Error(Errc::invalid_argument, "per: " + name + " is none of vertex, corner, face and mesh");
+  throw Error(Errc::invalid_argument, "per: " + name + " must be vertex, corner, face or mesh");
 }
 
 /// Keeps the arrays alive that it views.
@@ -156,7 +156,7 @@ ArrayGeometry discs(const Array& centers, const Array& normals, const Maybe& rad
 
 void bind_geometries(nb::module_& m) {
   using nb::arg;
-  nb::class_<ArrayGeometry>(m, "Geometry", "What is drawn, over arrays that it keeps alive.")
+  nb::class_<ArrayGeometry>(m, "Geometry", "A geometry over arrays, which it keeps alive.")
       .def_prop_ro("primitives", [](const ArrayGeometry& g) { return primitive_count(*g.view); })
       .def(
           "prepare",

@@ -45,7 +45,9 @@ void translate(const std::exception_ptr& thrown, void*) {
   } catch (const Error& e) {
     raise(class_of(e.code()), e.what());
   } catch (const std::bad_alloc&) {
-    raise("OutOfMemoryError", "there is not enough memory; memory_limit draws in pieces that fit");
+    raise(
+        "OutOfMemoryError",
+        "there is not enough memory; give memory_limit, and the frame is drawn in pieces that fit");
   }
 }
 

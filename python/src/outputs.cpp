@@ -78,7 +78,7 @@ std::vector<Wanted> wanted(const std::map<std::string, Output>& outputs, std::si
     if (array.dtype() != kind->type && !wide)
       throw Error(Errc::invalid_argument,
                   "out[" + name +
-                      "]: the array is of another type; docs/python_reference.md has the types of "
+                      "]: the array has another type; docs/python_reference.md has the types of "
                       "all outputs");
     if (ids && !wide && primitives > 0x7fffffffU)
       throw Error(Errc::invalid_argument,

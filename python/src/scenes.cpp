@@ -136,7 +136,7 @@ void ArrayScene::add_texture(const Array& pixels) {
   Texture texture;
   for (const std::size_t axis : {0U, 1U})
     if (pixels.shape(axis) > static_cast<std::size_t>(kMaxImageSize))
-      throw Error(Errc::invalid_argument, "texture: sides of at most 32768 pixels are drawn");
+      throw Error(Errc::invalid_argument, "texture: its sides must have at most 32768 pixels");
   texture.image = {static_cast<int>(pixels.shape(1)), static_cast<int>(pixels.shape(0))};
   const auto* const from = static_cast<const std::uint8_t*>(pixels.data());
   for (int y = 0; y < texture.image.height(); ++y)

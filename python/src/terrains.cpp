@@ -108,8 +108,8 @@ LitTerrain lit_map(terrain::HeightMap map, double cells_a_unit, const std::array
   if (mapping) {
     if (!mapping->isolines.empty() || !mapping->opacity.empty())
       throw Error(Errc::invalid_argument,
-                  "cmap: isolines and opacities are of meshes; on a terrain steps show where a "
-                  "height is");
+                  "cmap: isolines and opacities are drawn on meshes only; on a terrain steps show "
+                  "where a height is");
     std::vector<double> all;
     all.reserve(map.heights.pixels().size());
     for (const float h : map.heights.pixels()) all.push_back(static_cast<double>(h) / cells_a_unit);
@@ -186,10 +186,9 @@ LitTerrain lit_file(const std::string& file, const std::optional<std::string>& c
                     const std::optional<ScalarMapping>& mapping) {
   io::HeightGrid grid = io::read_heights(file, {});
   if (!scale && !grid.scale_known)
-    throw Error(Errc::invalid_argument,
-                file +
-                    ": does not say how long a cell is; give height_scale, the cells that a "
-                    "unit of it is high");
+    throw Error(Errc::invalid_argument, file +
+                                            ": does not say how long a cell is; give height_scale, "
+                                            "how many cells high a unit of it is");
   double cells_a_unit = 1 / grid.units_per_cell;
   if (scale)
     cells_a_unit = in_cells(grid.heights, *scale);
@@ -233,7 +232,8 @@ TerrainOptions frame(const LitTerrain& t, int width, int height, double distance
   const auto opaque = [](const Rgb& c) { return Rgba8{c[0], c[1], c[2], 255}; };
   if (environment_behind && sky)
     throw Error(Errc::invalid_argument,
-                "sky: is where environment_behind shows the environment; give fog its colour");
+                "sky: has no effect, because environment_behind shows the environment there; give "
+                "fog a colour instead");
   if (sky)
     o.sky = opaque(*sky);
   else if (t.ground.lights.empty())

@@ -90,7 +90,7 @@ def test_the_program_draws_the_same(tmp_path):
     ({"edges": {"angle": 181}}, "angle"),
     ({"edges": {"width": "wide"}}, "width"),
     ({"edges": 3}, "True or a dict"),
-    ({"title": 3}, "words"),
+    ({"title": 3}, "must be strings"),
     ({"captions": list("abcde")}, "four captions"),
     ({"title": "a", "text_scale": 0}, "text_scale"),
 ])

@@ -189,7 +189,7 @@ def bad_array(comm, thing):
 
 WRONG = {
     "an index": (rr.ArgumentError, "7", bad_array),
-    "what": (rr.ArgumentTypeError, "nothing that can be drawn", lambda comm, thing: rr.mpi.render(comm, object(), size=SIZE)),
+    "what": (rr.ArgumentTypeError, "cannot be drawn", lambda comm, thing: rr.mpi.render(comm, object(), size=SIZE)),
     "a keyword": (rr.ArgumentTypeError, "'colour'", lambda comm, thing: rr.mpi.render(comm, thing, size=SIZE, colour=1)),
     "a file": (rr.NotFoundError, "there is no such file", lambda comm, thing: rr.mpi.render(comm, "nofile.ply", size=SIZE)),
     "parts": (rr.ArgumentError, "parts", lambda comm, thing: rr.mpi.render(comm, thing, CAMERA, parts=[1, 2], size=SIZE)),

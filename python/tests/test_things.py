@@ -145,7 +145,7 @@ def test_open3ds_clouds_lines_and_tensors(sheet):
         expected = rr.render(ours, size=SIZE).color
         assert len(np.unique(expected.reshape(-1, 4), axis=0)) > 1
         assert np.array_equal(rr.render(theirs, size=SIZE).color, expected)
-    with pytest.raises(rr.ArgumentTypeError, match="VoxelGrid: nothing that can be drawn"):
+    with pytest.raises(rr.ArgumentTypeError, match="VoxelGrid: cannot be drawn"):
         rr.as_scene(stand_in("open3d.cpu.pybind.geometry", "VoxelGrid", voxel_size=1.0))
 
 

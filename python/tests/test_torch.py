@@ -47,11 +47,11 @@ def test_columns_gradients_and_what_cannot_stay(sheet):
     with pytest.raises(rr.ArgumentError, match="float16"):
         rr.Mesh(vertices.half(), triangles, copy=False)
     # These two are in this process's memory already, so the message must not say .cpu().
-    with pytest.raises(rr.ArgumentTypeError, match=r"positions: NumPy has no such array.*\.float\(\)"):
+    with pytest.raises(rr.ArgumentTypeError, match=r"positions: NumPy cannot take this array.*\.float\(\)"):
         rr.Mesh(vertices.bfloat16(), triangles)
-    with pytest.raises(rr.ArgumentTypeError, match=r"positions: NumPy has no such array.*\.to_dense\(\)"):
+    with pytest.raises(rr.ArgumentTypeError, match=r"positions: NumPy cannot take this array.*\.to_dense\(\)"):
         rr.Mesh(vertices.to_sparse(), triangles)
-    with pytest.raises(rr.ArgumentTypeError, match=r"positions: not in this process's memory.*\.cpu\(\)"):
+    with pytest.raises(rr.ArgumentTypeError, match=r"positions: is not in this process's memory.*\.cpu\(\)"):
         rr.Mesh(vertices.to("meta"), triangles)
 
 

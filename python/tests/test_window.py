@@ -77,7 +77,7 @@ def shown_again(tmp_path, options, key):
     assert run.returncode == 0, run.stderr
     shown = (tmp_path / "shown.png").read_bytes()
     (tmp_path / "shown.png").unlink()
-    assert "no words" not in (tmp_path / "shown.py").read_text()
+    assert "Left out here" not in (tmp_path / "shown.py").read_text()
     done = subprocess.run([sys.executable, "shown.py"], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr + (tmp_path / "shown.py").read_text()
     now = (tmp_path / "shown.png").read_bytes()

@@ -123,7 +123,7 @@ void set(MeshScalarsView& attribute, const ScalarView& values, int per) {
 }
 template <class View>
 void set(View& attribute, const View& values, int per) {
-  require(per == RASTRUM_PER_VERTEX, "per: corners and faces are meshes' alone");
+  require(per == RASTRUM_PER_VERTEX, "per: only meshes have values of corners and faces");
   attribute = values;
 }
 

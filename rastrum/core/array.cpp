@@ -116,8 +116,9 @@ void refuse_null(std::size_t count) {
 
 void refuse_flat(std::size_t numbers, int a_value) {
   throw Error(Errc::invalid_argument,
-              "array: " + std::to_string(numbers) + " numbers are no whole values, which have " +
-                  std::to_string(a_value) + " each; " +
+              "array: " + std::to_string(numbers) +
+                  " numbers do not make up whole values, which have " + std::to_string(a_value) +
+                  " each; " +
                   (a_value == 4 && numbers % 3 == 0 ? "colours without alpha are ArrayView::rgb"
                                                     : "ArrayView::of takes a count and a stride"));
 }

@@ -15,7 +15,7 @@ void throw_moved_from(const char* name) {
 }
 
 void throw_no_function() {
-  throw Error(Errc::invalid_argument, "a function is called that is none; give one");
+  throw Error(Errc::invalid_argument, "an empty function is called; give one that can be called");
 }
 
 struct Count {

@@ -116,7 +116,7 @@ Image<Vec3> decode_exr(Bytes bytes, const std::string& name, Budget& budget) {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& e) {
-    throw Error(Errc::bad_format, name + ": is not a sound OpenEXR file: " + e.what());
+    throw Error(Errc::bad_format, name + ": is not a valid OpenEXR file: " + e.what());
   }
 }
 

@@ -12,7 +12,7 @@ bool is_glb(Bytes bytes) {
 
 Glb open_glb(Bytes bytes, const std::string& name) {
   const auto fail = [&](const std::string& what) {
-    throw Error(Errc::bad_format, name + ": is not a sound GLB: " + what);
+    throw Error(Errc::bad_format, name + ": is not a valid GLB: " + what);
   };
   const auto u32 = [&](std::size_t at) {
     return load_little_endian<std::uint32_t>(bytes.data() + at);

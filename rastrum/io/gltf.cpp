@@ -152,7 +152,7 @@ class GltfReader {
     const auto leave_out = [&](const char* why) {
       scene_.warnings.push_back(node.path() + ": its light " + why + " and is left out");
     };
-    if (!light) return leave_out("is of a kind that is not known");
+    if (!light) return leave_out("has a kind that is not known");
     const Light standing = placed(*light, to_world_[index]);
     try {
       check_lights({&standing, 1});

@@ -135,7 +135,7 @@ void check_materials(const Json& document, const Counts& n) {
     const auto one_of = [&](const char* key, std::initializer_list<std::size_t> values) {
       const auto member = s.get(key);
       if (member && std::find(values.begin(), values.end(), member->count()) == values.end())
-        member->fail("has no value of the specification");
+        member->fail("has a value that the specification does not allow");
     };
     one_of("magFilter", {9728, 9729});
     one_of("minFilter", {9728, 9729, 9984, 9985, 9986, 9987});
@@ -352,7 +352,7 @@ void check_extensions(const Json& document, std::vector<std::string>& warnings) 
 std::size_t component_bytes(const Json& component_type) {
   const std::size_t type = component_type.count();
   if (type < kByte || type > kFloat || (type > kUshort && type < kUint))
-    component_type.fail("has no value of the specification");
+    component_type.fail("has a value that the specification does not allow");
   return with_component(type, [](auto v) { return sizeof(v); });
 }
 

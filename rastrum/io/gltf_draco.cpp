@@ -78,7 +78,7 @@ void check_sizes(const Json& extension, Bytes packed, std::size_t vertices, std:
   if (as_text(packed).substr(0, 5) != "DRACO" || b.is_cut() || kind != 1 || method > 1)
     extension.fail("is no stream of a Draco mesh");
   if (major != 2 || minor != 2)
-    extension.fail("is of Draco's version " + std::to_string(major) + "." + std::to_string(minor) +
+    extension.fail("has Draco's version " + std::to_string(major) + "." + std::to_string(minor) +
                        "; only 2.2 is read",
                    Errc::unsupported);
   constexpr std::size_t kHasMetadata = 0x8000;
@@ -149,7 +149,8 @@ Unpacked decode_draco(const Json& primitive, const Json& extension, const Json& 
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(packed.data()), packed.size());
   auto decoded = draco::Decoder().DecodeMeshFromBuffer(&buffer);
-  if (!decoded.ok()) extension.fail("is no sound stream: " + decoded.status().error_msg_string());
+  if (!decoded.ok())
+    extension.fail("is not a valid stream: " + decoded.status().error_msg_string());
   const draco::Mesh& mesh = *decoded.value();
   if (mesh.num_points() != vertices || mesh.num_faces() != corners / 3)
     extension.fail("has " + std::to_string(mesh.num_faces()) + " triangles of " +

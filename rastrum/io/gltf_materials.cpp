@@ -238,7 +238,7 @@ std::int32_t Materials::texture(const Json& owner, const char* key, const Textur
   if (!info) return kNoTexture;
   if (use_of(*info) != expected) {
     scene_.warnings.push_back(info->path() +
-                              " has texture coordinates or a transform of its own, other than the "
+                              " has other texture coordinates or another transform than the "
                               "material's first texture; drawn without it");
     return kNoTexture;
   }
@@ -254,12 +254,11 @@ std::int32_t Materials::load_texture(std::size_t index) {
   const auto webp = t.extension(kWebp);
   if (webp && has_webp()) source = webp->get("source");
   if (!source) {
-    const char* const why =
-        webp ? "is of EXT_texture_webp, for which this rastrum was built "
-               "without libwebp (Debian: libwebp-dev)"
-        : t.extension(kBasisu)
-            ? "is of KHR_texture_basisu, which no library that is used here reads"
-            : "has no source that is read here";
+    const char* const why = webp ? "needs EXT_texture_webp, but this rastrum was built without "
+                                   "libwebp (Debian: libwebp-dev)"
+                            : t.extension(kBasisu)
+                                ? "needs KHR_texture_basisu, which is not read here"
+                                : "has no source that is read here";
     scene_.warnings.push_back(t.path() + " " + why + "; drawn without it");
     return kNoTexture;
   }

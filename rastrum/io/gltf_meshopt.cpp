@@ -38,7 +38,7 @@ void check_meshopt(const Json& view, const Json& extension) {
   } else if (mode == "TRIANGLES" || mode == "INDICES") {
     if (stride != 2 && stride != 4) fail_stride("2 or 4");
     if (mode == "TRIANGLES" && count % 3 != 0) extension["count"].fail("must be a multiple of 3");
-    if (filter != "NONE") extension["filter"].fail("is for attributes");
+    if (filter != "NONE") extension["filter"].fail("must be NONE unless the mode is ATTRIBUTES");
   } else {
     extension["mode"].fail("must be ATTRIBUTES, TRIANGLES or INDICES");
   }
@@ -69,7 +69,7 @@ std::vector<std::byte> decode_meshopt(const Json& extension, Bytes packed) {
       : mode == "TRIANGLES"
           ? meshopt_decodeIndexBuffer(bytes.data(), count, stride, from, packed.size())
           : meshopt_decodeIndexSequence(bytes.data(), count, stride, from, packed.size());
-  if (failed != 0) extension.fail("is no sound stream of " + mode);
+  if (failed != 0) extension.fail("is not a valid stream of " + mode);
   if (filter == "OCTAHEDRAL") meshopt_decodeFilterOct(bytes.data(), count, stride);
   if (filter == "QUATERNION") meshopt_decodeFilterQuat(bytes.data(), count, stride);
   if (filter == "EXPONENTIAL") meshopt_decodeFilterExp(bytes.data(), count, stride);

@@ -128,7 +128,7 @@ HeightGrid read_height_gdal(const std::filesystem::path& file, const ReadOptions
   const std::unique_ptr<void, decltype(GDALClose)*> data(
       gdal.open(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, drivers, nullptr, nullptr),
       gdal.close);
-  if (!data) fail("is no sound GeoTIFF");
+  if (!data) fail("is not a valid GeoTIFF");
   const int width = gdal.x_size(data.get()), height = gdal.y_size(data.get());
   if (gdal.count(data.get()) < 1) fail("holds no band of heights");
   if (width > kMaxImageSize || height > kMaxImageSize)
@@ -172,9 +172,10 @@ HeightGrid read_height_gdal(const std::filesystem::path& file, const ReadOptions
 #else
 
 HeightGrid read_height_gdal(const std::filesystem::path& file, const ReadOptions&) {
-  throw Error(Errc::unsupported, file.string() +
-                                     ": GeoTIFF needs GDAL, which was not there when rastrum was "
-                                     "built (Debian: libgdal-dev)");
+  throw Error(
+      Errc::unsupported,
+      file.string() +
+          ": GeoTIFF needs GDAL, but this rastrum was built without it (Debian: libgdal-dev)");
 }
 
 #endif

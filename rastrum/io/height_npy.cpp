@@ -18,7 +18,7 @@ HeightGrid heights_of(const NpyHeader& header, std::span<const std::byte> bytes,
                       const std::string& name) {
   const std::size_t rows = header.shape[0], columns = header.shape[1], count = rows * columns;
   if (const std::size_t there = (bytes.size() - header.data) / sizeof(T); count > there)
-    throw Error(Errc::bad_format, name + ": is not a sound NPY file: it ends after " +
+    throw Error(Errc::bad_format, name + ": is not a valid NPY file: it ends after " +
                                       std::to_string(there) + " of " + std::to_string(count) +
                                       " heights");
   const bool swap = header.type[0] == (kLittleEndian ? '>' : '<');

@@ -94,7 +94,7 @@ bool read_rows(State* state, ImageView<Rgba8> image) {
 Image<Rgba8> decode_jpeg(Bytes bytes, const std::string& name, Budget& budget) {
   State state;
   const auto fail = [&](const std::string& what) {
-    throw Error(Errc::bad_format, name + ": is not a sound JPEG: " + what);
+    throw Error(Errc::bad_format, name + ": is not a valid JPEG: " + what);
   };
   if (!read_header(&state, bytes)) {
     if (state.unsupported)

@@ -24,7 +24,7 @@ std::unique_ptr<LargeFile> open_by_name(const std::filesystem::path& file,
   if (extension == ".glb") return open_large_glb(file, memory_limit);
   if (extension == ".npy") return open_large_npy(file);
   throw Error(Errc::unsupported,
-              file.string() + ": out of core there are binary files alone: .ply, .stl, .glb, .npy");
+              file.string() + ": out of core only binary files are drawn (.ply, .stl, .glb, .npy)");
 }
 
 }  // namespace

@@ -82,7 +82,7 @@ class LargeGlb final : public LargeIndexed {
     try {
       look_at_scene();
     } catch (const json::exception& e) {
-      fail(std::string("its JSON is not as glTF has it: ").append(e.what()));
+      fail(std::string("its JSON is not that of a glTF file: ").append(e.what()));
     }
   }
 
@@ -239,7 +239,7 @@ class LargeGlb final : public LargeIndexed {
 
   void read_json(std::uint64_t memory_limit) {
     const Bytes bytes = bytes_of_file();
-    if (!is_glb(bytes)) refuse("it is no GLB; .gltf with files beside is read");
+    if (!is_glb(bytes)) refuse("it is not a GLB; a .gltf is read whole");
     const Glb glb = open_glb(bytes, name_);
     if (!glb.bin) refuse("it has no binary chunk");
     bin_ = static_cast<std::size_t>(glb.bin->data() - bytes.data());
@@ -439,7 +439,7 @@ class LargeGlb final : public LargeIndexed {
                              : type == kUshort || type == 5122 ? 2
                                                                : 1;
     const std::size_t bytes = each * components(a.at("type").get<std::string>());
-    if (bytes == 0) refuse("an accessor is of matrices");
+    if (bytes == 0) refuse("an accessor holds matrices");
     const std::size_t inside = whole_or(a, "byteOffset", 0);
     const std::size_t stride = whole_or(json_["bufferViews"][of_view], "byteStride", bytes);
     const std::uint64_t count = whole_of(a, "count");
@@ -454,7 +454,9 @@ class LargeGlb final : public LargeIndexed {
     text.resize((text.size() + 3) / 4 * 4, ' ');
     if (kGlbHeader + 2 * kGlbChunk + text.size() + bin.size() >
         std::numeric_limits<std::uint32_t>::max())
-      refuse("what is drawn of it at once has more than 4 GiB; a lower memory limit takes less");
+      refuse(
+          "the part that is drawn at once has more than 4 GiB; with a lower memory limit the parts "
+          "are smaller");
     std::vector<std::byte> out;
     const auto put = [&](const void* from, std::size_t n) {
       const auto* const bytes = static_cast<const std::byte*>(from);

@@ -50,7 +50,7 @@ class NpyHeaderReader {
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(Errc::bad_format, name_ + ": is not a sound NPY file: " + what);
+    throw Error(Errc::bad_format, name_ + ": is not a valid NPY file: " + what);
   }
   [[nodiscard]] std::size_t byte(std::size_t i) const {
     return std::to_integer<std::size_t>(bytes_[i]);
@@ -135,8 +135,8 @@ NpyTriangles parse_npy_triangles(Bytes bytes, const std::string& name) {
            "'rastrum terrain --height'");
   const std::string type = header.type.substr(1);
   if (type != "f4" && type != "f8")
-    refuse("its numbers are of type " + quoted(std::string_view(header.type)) +
-           ", and corners of triangles are read of float32 ('<f4') or float64 ('<f8')");
+    refuse("its numbers have type " + quoted(std::string_view(header.type)) +
+           ", but corners of triangles must be float32 ('<f4') or float64 ('<f8')");
   if (header.type[0] != '<')
     refuse("its numbers of type " + quoted(std::string_view(header.type)) +
            " are not little-endian; save array.astype('<" + type + "')");
@@ -146,7 +146,7 @@ NpyTriangles parse_npy_triangles(Bytes bytes, const std::string& name) {
   const std::size_t there = (bytes.size() - header.data) / triangles.bytes_each();
   if (triangles.count > there)
     throw Error(Errc::bad_format,
-                name + ": is not a sound NPY file: it ends after " + std::to_string(there) +
+                name + ": is not a valid NPY file: it ends after " + std::to_string(there) +
                     " of " + std::to_string(triangles.count) + " triangles, which begin at byte " +
                     std::to_string(header.data));
   return triangles;

@@ -112,7 +112,7 @@ bool read_rows(PngReader* state, png_bytepp rows, std::size_t channel_bytes) {
 }
 
 [[noreturn]] void fail(const std::string& name, const char* what) {
-  throw Error(Errc::bad_format, name + ": is not a sound PNG: " + what);
+  throw Error(Errc::bad_format, name + ": is not a valid PNG: " + what);
 }
 
 /// Reads the header of a PNG whose size its bytes can fill. `stored`: made from `bytes`.

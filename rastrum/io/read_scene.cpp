@@ -256,7 +256,7 @@ Image<Vec3> decode_light(std::span<const std::byte> bytes, const std::string& na
     if (text.starts_with("\x76\x2f\x31\x01")) return decode_exr(bytes, name, budget);
     if (!text.starts_with("\x89PNG") && !text.starts_with("\xFF\xD8\xFF"))
       throw Error(Errc::unsupported,
-                  name + ": is no picture of light: none of .hdr, .exr, .png, .jpg");
+                  name + ": is no picture that can be a light; give an .hdr, .exr, .png or .jpg");
     const Image<Rgba8> display = decode_picture(bytes, name, budget);
     float linear[256];
     for (int i = 0; i < 256; ++i) linear[i] = static_cast<float>(linear_from_srgb(i / 255.0));

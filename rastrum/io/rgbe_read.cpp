@@ -40,7 +40,7 @@ class Rgbe {
   using Pixel = std::array<std::uint8_t, 4>;
 
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(Errc::bad_format, name_ + ": is not a sound Radiance picture: " + what);
+    throw Error(Errc::bad_format, name_ + ": is not a valid Radiance picture: " + what);
   }
   [[noreturn]] void fail_row(const std::string& what) const {
     fail("row " + std::to_string(row_) + ": " + what);

@@ -32,7 +32,7 @@ Image<Rgba8> decode_webp(Bytes bytes, const std::string& name, Budget& budget) {
     throw Error(Errc::unsupported, name + ": WebP needs " RASTRUM_WEBP_LIBRARY
                                           ", which this machine lacks (Debian: libwebp7)");
   const auto fail = [&](const char* what) {
-    throw Error(Errc::bad_format, name + ": is not a sound WebP picture" + what);
+    throw Error(Errc::bad_format, name + ": is not a valid WebP picture" + what);
   };
   const auto* const from = reinterpret_cast<const std::uint8_t*>(bytes.data());
   WebPBitstreamFeatures has;
@@ -55,10 +55,10 @@ bool has_webp() {
 }
 
 Image<Rgba8> decode_webp(Bytes, const std::string& name, Budget&) {
-  throw Error(Errc::unsupported,
-              name +
-                  ": is a WebP picture, for which this rastrum was built without libwebp "
-                  "(Debian: libwebp-dev)");
+  throw Error(
+      Errc::unsupported,
+      name +
+          ": is a WebP picture, but this rastrum was built without libwebp (Debian: libwebp-dev)");
 }
 
 #endif

@@ -118,10 +118,10 @@ void MpiRanks::max_of_each(std::span<std::uint64_t> values) {
 bool MpiRanks::is_one_node() {
   if (node_ == MPI_COMM_NULL) {
     check(MPI_Comm_split_type(comm_, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &node_),
-          "asking who is of this machine");
+          "asking which ranks are on this machine");
     check(MPI_Comm_set_errhandler(node_, MPI_ERRORS_RETURN), "setting what errors do");
     int here = 0;
-    check(MPI_Comm_size(node_, &here), "asking how many are of this machine");
+    check(MPI_Comm_size(node_, &here), "asking how many ranks are on this machine");
     one_node_ = here == size_;  // then for all ranks
   }
   return one_node_;

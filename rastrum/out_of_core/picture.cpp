@@ -162,14 +162,15 @@ void Picture::check() const {
   };
   require(!frame_.shadows, "shadows need all triangles at once; draw without");
   require(frame_.shader != Shader::id,
-          "the shader 'id' is of a whole file's ids; take the target of ids");
-  require(options_.renderer.device != Device::cuda, "frames are the CPU's");
+          "the shader 'id' needs the ids of the whole file; take the target ids");
+  require(options_.renderer.device != Device::cuda,
+          "only the CPU draws; take Device::threads or Device::serial");
   require(targets_.keys.empty() && targets_.overdraw.empty() && targets_.extra.empty() &&
               targets_.errors.empty() && targets_.ids32.empty() && targets_.instances32.empty() &&
               targets_.primitives32.empty(),
-          "there are no targets keys, overdraw, errors and extra, and ids of 64 bits alone");
+          "the targets keys, overdraw, errors and extra are not filled, and ids have 64 bits");
   require(is_whole() || !frame_.environment_behind,
-          "what is behind a picture in bands of rows is not drawn");
+          "the environment behind a picture in bands of rows is not drawn");
   require(is_whole() || frame_.shader != Shader::depth,
           "the shader depth stretches the depths of a whole picture, not of bands of rows");
   check_band_rows(options_.rows);

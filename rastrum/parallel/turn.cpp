@@ -47,9 +47,9 @@ std::mutex& CallingTurn::not_within(std::mutex& turn) {
   for (const CallingTurn* t = current(); t != nullptr; t = t->outer_)
     if (&t->mutex_ == &turn)
       reject(
-          "a function that a frame calls (of vertices, a shader, a fragment test) called "
-          "the renderer that draws the frame, which would wait for itself; give it a "
-          "renderer of its own");
+          "a function that a frame calls (for vertices, as a shader, as a fragment test) called "
+          "the renderer of that frame, which would wait for itself; give the function its own "
+          "renderer");
   return turn;
 }
 

@@ -39,7 +39,7 @@ Verdict verdict_of(const std::exception_ptr& failure) {
   } catch (const std::exception& e) {
     set_text(v, e.what());
   } catch (...) {
-    set_text(v, "an exception that is none of the standard library's");
+    set_text(v, "an exception that is not one of the standard library");
   }
   return v;
 }

@@ -23,7 +23,7 @@ void check_alike(const Annotations& a, const SceneView& scene, const Targets& ta
   if (!is_root) return;
   check_annotated(targets);
   if (a.bar && scene.scalar_mappings.empty())
-    reject("Annotations::bar: is of things with scalars; the root has none");
+    reject("Annotations::bar: needs things with scalars; the root has none");
 }
 
 /// As Annotator computes it for a scene.

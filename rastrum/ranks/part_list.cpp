@@ -55,7 +55,7 @@ PartList::PartList(const Mail& mail) {
     Part& part = parts_[i];
     if (i > 0 && parts_[i - 1].number == part.number)
       reject("part ", part.number, " is on rank ", parts_[i - 1].rank, " and on rank ", part.rank,
-             "; each part has a number of its own");
+             "; each part needs its own number");
     part.first_id = primitives_;
     primitives_ += part.primitives;
   }

@@ -184,7 +184,7 @@ struct Annotator::Impl {
     const overlay::Canvas canvas{.color8 = targets.color8, .color = targets.color};
     check_annotated(targets);
     if (a.bar && scene.scalar_mappings.empty())
-      reject("Annotations::bar: is of things with scalars; none has any");
+      reject("Annotations::bar: needs things with scalars; none has any");
     draw_effects(a, scene, camera, targets, canvas, edges, known_edges);
     const overlay::Look look = look_of(a, background);
     if (a.bounds)

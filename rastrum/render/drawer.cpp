@@ -99,12 +99,12 @@ class Drawer final : public raster::FrameDrawer {
   }
   /// Why the device leaves a frame to the CPU; empty where it draws it.
   [[nodiscard]] std::string why_not_there(const FrameRequest& request, bool has_layers) const {
-    if (request.has_cuts()) return "clip planes are the CPU's";
+    if (request.has_cuts()) return "only the CPU has clip planes";
     if (raster::wants_surface(request.targets) || !request.targets.linear.empty())
-      return "of the targets the device has color8, color, depth, ids and keys";
-    if (request.part) return "a part of a frame is the CPU's";
-    if (request.sink != nullptr && has_layers) return "layers that are handed on are the CPU's";
-    if (request.has_quadrics()) return "spheres, cylinders, tubes and discs are the CPU's";
+      return "the device has only the targets color8, color, depth, ids and keys";
+    if (request.part) return "only the CPU draws a part of a frame";
+    if (request.sink != nullptr && has_layers) return "only the CPU hands layers on to other ranks";
+    if (request.has_quadrics()) return "only the CPU draws spheres, cylinders, tubes and discs";
     if (!request.device.why_not.empty()) return request.device.why_not;
     return device_.device->why_not(request);
   }

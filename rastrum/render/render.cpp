@@ -258,7 +258,7 @@ FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& ca
   if (!call.apart.part) check_apart(call.targets, runs);
   if (options.device == Device::cuda) call.device.why_not = why_not_on_device(scene);
   if (call.device.why_not.empty() && (!o.lights.empty() || call.is_shadow_map))
-    call.device.why_not = "the frame has lights of its own, which are the CPU's";
+    call.device.why_not = "the frame has its own lights, which only the CPU has";
   raster::check_materials(runs);
   check_surfaces(runs);
   check_outputs(call.targets, true, taken == Shader::material);
@@ -351,7 +351,7 @@ FrameStats Renderer::Impl::draw(std::span<raster::Draw> draws, const raster::Sha
     check_outputs(targets, false, false);
     if (!o.clip_planes.empty())
       throw Error(Errc::unsupported,
-                  "clip planes are of a scene's world; a program discards fragments itself");
+                  "clip planes need a scene's world; a program discards fragments itself");
   }
   check_ids(targets, call.pass.first_id, draws);
   raster::MixedDraws mixed(draws, shading, test);

@@ -231,9 +231,9 @@ std::string why_not_on_device(const SceneView& scene) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const InstanceView& instance = scene.instances[i];
     if (shows_scalars(scene, instance))
-      return text_of("instance ", i, " shows scalars, which are the CPU's to colour");
+      return text_of("instance ", i, " shows scalars, which only the CPU colours");
     if (is_points_or_lines(instance.geometry))
-      return text_of("instance ", i, " is of points or lines, which are the CPU's");
+      return text_of("instance ", i, " has points or lines, which only the CPU draws");
     if (instance.mesh() == nullptr) continue;
     const MeshView& m = *instance.mesh();
     const auto say = [&](const char* what) {
@@ -244,7 +244,7 @@ std::string why_not_on_device(const SceneView& scene) {
         !is_packed(m.colors) || !m.face_materials.is_packed())
       return say("arrays that are not packed float32 or uint32, one value a vertex");
     if (instance.opacity != 1 || instance.color || !instance.visible)
-      return say("an opacity, a colour or a visibility of its own");
+      return say("its own opacity, colour or visibility");
   }
   return {};
 }

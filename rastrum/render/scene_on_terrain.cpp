@@ -42,8 +42,8 @@ struct SceneOnTerrain::Impl {
     const Shader taken = shader_for(frame.shader, scene);
     if (taken != Shader::material)
       reject(
-          "what stands on ground whose light is mapped is drawn by "
-          "the shader 'material', which has linear light, not by '",
+          "meshes on ground with tone mapping need the shader 'material', which has linear light, "
+          "not '",
           name(taken), "'");
     return true;
   }
@@ -74,7 +74,7 @@ FrameStats SceneOnTerrain::draw(const TerrainScene& given, const FrameOptions& f
              options.width, "x", options.height,
              "; give FrameOptions and TerrainOptions the same size");
     if (picture.depth.empty())
-      reject("to stand on a terrain its depth is needed: draw both with TerrainTargets::depth");
+      reject("meshes on a terrain need its depth: draw both with TerrainTargets::depth");
     check_size(picture.depth, width, height, "the depth target");
     check_size(picture.color8, width, height, "the color8 target");
     Image<float>& depth = impl_->depth;
@@ -84,7 +84,7 @@ FrameStats SceneOnTerrain::draw(const TerrainScene& given, const FrameOptions& f
     instances.assign(given.scene.instances.begin(), given.scene.instances.end());
     for (const std::size_t i : given.facing) {
       if (i >= instances.size())
-        reject("no instance has the number ", i, " that is to face the camera");
+        reject("there is no instance with the number ", i, " that is to face the camera");
       // The terrain's camera turns the same way: 0 faces +z, the south.
       instances[i].object_to_world =
           instances[i].object_to_world * rotation(rotation_about({0, 1, 0}, camera.angle_rad));

@@ -135,12 +135,12 @@ void check_outputs(const Targets& targets, bool has_scene, bool shades_materials
       if (row.needs_scene() && !(targets.*row.image).empty())
         throw Error(Errc::unsupported,
                     text_of("the ", row.name,
-                            " target is of a scene's surfaces; a program returns "
-                            "its own as a further output (Targets::extra)"));
+                            " target needs a scene's surfaces; a program returns its own values as "
+                            "a further output (Targets::extra)"));
     });
   if (!targets.linear.empty() && !shades_materials)
     throw Error(Errc::unsupported,
-                "the linear target is of the shader 'material': the others compute display values");
+                "the linear target needs the shader 'material': the others compute display values");
 }
 
 void check_ids(const Targets& targets, std::uint64_t first_id,
@@ -174,10 +174,10 @@ void check_in_place(const SceneView& scene, const Targets& targets, Shader shade
   if (const std::string why = why_not_on_device(scene); !why.empty()) require(false, why);
   const auto is_host_only = [](const auto& row) { return !row.has_device(); };
   require(targets.extra.empty() && !raster::has_target(targets, is_host_only),
-          "of the targets there are color8, color, depth, ids and keys");
-  require(o.tone == ToneMapping{}, "tone mapping is the CPU's");
-  require(o.lights.empty(), "lights of the frame's own are the CPU's");
-  require(!o.environment_behind, "an environment behind the picture is the CPU's");
+          "only the targets color8, color, depth, ids and keys can be filled");
+  require(o.tone == ToneMapping{}, "only the CPU maps tones");
+  require(o.lights.empty(), "only the CPU has lights of the frame");
+  require(!o.environment_behind, "only the CPU draws an environment behind the picture");
   require(o.clip_planes.empty() &&
               std::ranges::all_of(scene.instances,
                                   [](const InstanceView& i) { return i.clip_planes.empty(); }),
@@ -203,8 +203,9 @@ void set_no_distance(const Targets& targets, float no_distance) {
 }
 
 void check_over(const Targets& targets, const Pass& pass, const FrameOptions& o) {
-  require(!targets.depth.empty(), "to draw over a picture its depth is needed");
-  require(!pass.load, "a pass that loads keys knows what it draws over by them");
+  require(!targets.depth.empty(), "to draw over a picture, give the depth target with its depth");
+  require(!pass.load,
+          "a pass that loads keys cannot draw over a picture, too: the keys tell what is there");
   require(o.samples == 1, "a picture that is drawn over has one sample a pixel");
 }
 

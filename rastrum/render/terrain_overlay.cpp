@@ -71,9 +71,9 @@ void check_ground_annotations(const Annotations& a, const GroundNumbers& numbers
                                                 : nullptr;
   if (of_meshes != nullptr)
     reject("Annotations::", of_meshes,
-           ": is of meshes; a terrain has bounds, axes, bar, title and captions");
+           ": is drawn on meshes only; a terrain has bounds, axes, bar, title and captions");
   if (a.bar && (numbers.mapping == nullptr || numbers.colors == nullptr))
-    reject("Annotations::bar: is of heights that are coloured as numbers; these are not");
+    reject("Annotations::bar: needs heights that are coloured as numbers; these are not");
   check(a);
 }
 

@@ -85,10 +85,10 @@ bool TonePass::wanted(const FrameOptions& frame, const Targets& targets, Shader 
   if (frame.tone == ToneMapping{} || (targets.color8.empty() && targets.color.empty()))
     return false;
   if (taken != Shader::material)
-    reject("tone mapping is of linear light, which the shader '", name(taken),
-           "' has not; take 'material'");
+    reject("tone mapping needs linear light, which the shader '", name(taken),
+           "' does not have; take 'material'");
   if (pass.over || pass.load)
-    throw Error(Errc::unsupported, "tone mapping is of a whole picture, not of one over another");
+    throw Error(Errc::unsupported, "tone mapping needs a whole picture, not one over another");
   return true;
 }
 

@@ -70,7 +70,8 @@ Light lamp(double elevation, double azimuth, float intensity, Vec3 color) {
 void check_lights(std::span<const Light> lights) {
   const FloatScope floats;
   if (lights.size() > kMaxLights)
-    throw Error(Errc::invalid_argument, std::to_string(lights.size()) + " lights, at most " +
+    throw Error(Errc::invalid_argument, std::to_string(lights.size()) +
+                                            " lights are given, and at most " +
                                             std::to_string(kMaxLights) + " are possible");
   for (std::size_t i = 0; i < lights.size(); ++i) {
     const Light& light = lights[i];

@@ -154,10 +154,10 @@ HeightFunction expression_function(const std::string& expression) {
 
 HeightFunction expression_function(const std::string& expression) {
   const FloatScope floats;
-  throw Error(Errc::unsupported,
-              text_of("the expression '", expression,
-                      "' needs muParser, which was not there when rastrum was built "
-                      "(Debian: libmuparser-dev)"));
+  throw Error(
+      Errc::unsupported,
+      text_of("the expression '", expression,
+              "' needs muParser, but this rastrum was built without it (Debian: libmuparser-dev)"));
 }
 
 #endif

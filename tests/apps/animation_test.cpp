@@ -124,7 +124,7 @@ TEST_F(Animations, WhatCannotBeMeantIsRefused) {
     Program::refused(drawing(extra), words);
   };
   refused("-o p.png --time -1", "--time: must not be negative");
-  refused("-o p.png --animation 1", "--animation: is for --time and --path");
+  refused("-o p.png --animation 1", "--animation: needs --time or --path");
   refused("-o p.png --time 1 --animation 2",
           "--animation: there is no animation 2: the files have 2");
   Program::refused("render --look plain builtin:boxes --time 1 -o p.png",

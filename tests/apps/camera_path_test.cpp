@@ -194,7 +194,7 @@ TEST_F(CameraPathFile, RefusesWhatCannotBeMeant) {
   refused("--path p.json -o %s.png", "%04d");
   refused("--path no.json -o %d.png", "no.json: cannot be read: No such file");
   refused("--path p.json --frames 3 -o %d.png", "--frames");
-  refused("--fps 3 -o a.png", "--fps: is for --path");
+  refused("--fps 3 -o a.png", "--fps: needs --path");
   refused("--path p.json --fps 0 -o %d.png", "--fps");
   refused("-o a.mp4", "give --path");
   refused("--path p.json --size 31x20 -o a.mp4", "");

@@ -162,7 +162,7 @@ TEST_F(TerrainGround, WhatMakesNoSenseSaysWhatToDo) {
   refuse("the sky dims", "--dim-sky --light ambient --sky #123456");
   refuse("--light environment:FILE", "--environment-behind");
   refuse("--light environment:FILE", "--environment-behind --light ambient");
-  refuse("give --fog one", "--environment-behind --light environment:room --sky red");
+  refuse("give --fog a colour", "--environment-behind --light environment:room --sky red");
   refuse("--lights or --light", "--tone aces");
   refuse("--lights or --light", "--exposure 1");
   refuse("by --light", "--lights file");
@@ -174,7 +174,7 @@ TEST_F(TerrainGround, WhatMakesNoSenseSaysWhatToDo) {
   refuse("--steps", "--isoline-color red");
   refuse("ground is opaque", "--scalar-opacity 0:0,1:1");
   refuse("'height'", "--scalars z");
-  refuse("upside down", "--range 5,2");
+  refuse("must not be above the second", "--range 5,2");
   refuse("--cmap: colours the ground", "--cmap viridis --color c.png");
   refuse("above 0", "--bar T --log --range 0,5");
   refuse("planar", "--axes --projection cylindrical");

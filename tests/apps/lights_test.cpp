@@ -112,8 +112,7 @@ TEST_F(LightOptions, RefuseWhatCannotBeMeant) {
   refused("--light environment", "its environment has no picture");
   refused("--light environment:none.hdr", "none.hdr");
   refused("--light environment:room:range=2", "has no 'range=2'");
-  refused("--light headlight --environment-behind",
-          "--environment-behind: is of --light environment");
+  refused("--light headlight --environment-behind", "--environment-behind: needs an environment");
   refused("--light ambient:1,2,3", "has no place");
   refused("--light point:1,2,3:outer=4", "has no 'outer=4'");
   refused("--light point:1,2,3:range=-4", "its range");
@@ -122,7 +121,7 @@ TEST_F(LightOptions, RefuseWhatCannotBeMeant) {
   refused("--light headlight:intensity=nan", "--light");
   refused("--light spot:0,0,1:inner=30:outer=20", "its cone");
   refused("--light headlight:of=me", "of= is camera or world");
-  refused("--shadows", "--shadows: is of --lights and --light");
+  refused("--shadows", "--shadows: needs lights");
   refused("--lights studio --shadow-size 512", "--shadow-size: needs --shadows");
   refused("--lights disco", "--lights");
   refused("--lights file", "have no lights");

@@ -45,16 +45,16 @@ TEST_F(NothingSeen, OfShapes) {
   const std::string beyond = "all 12 triangles lie outside of the view";
   for (const auto& [input, options, reason, remedy, cure] : std::vector<std::array<std::string, 5>>{
            {"builtin:boxes?count=1", "--eye 0,0,5 --target 0,0,9",
-            "all 12 triangles lie behind the camera", "--fit in the place of --eye", "--fit"},
-           {"builtin:boxes?count=1", "--eye 0,0,5 --target 9,0,4", beyond,
-            "--fit in the place of --eye", "--fit"},
+            "all 12 triangles lie behind the camera", "--fit instead of --eye", "--fit"},
+           {"builtin:boxes?count=1", "--eye 0,0,5 --target 9,0,4", beyond, "--fit instead of --eye",
+            "--fit"},
            {"builtin:boxes?count=1", "--orthographic 1 --target 50,0,0 --eye 50,0,9", beyond,
             "--fit", "--orthographic fit"},
            {"builtin:boxes?count=1", "--near 100",
             "all 12 triangles lie in front of the near plane", "leave out --near", ""},
            {"builtin:sphere", "--eye 0,0,100000", "all 3968 triangles are smaller than a pixel",
             "--fit", "--fit"},
-           {"builtin:sphere", "--opacity 0", "--opacity 0 makes all of it transparent", "more",
+           {"builtin:sphere", "--opacity 0", "--opacity 0 makes all of it transparent", "larger",
             "--opacity 0.5"}})
     expect(input, options, reason, remedy, cure);
 }

@@ -114,8 +114,10 @@ TEST_F(Options, ViewsByNameAndAngle) {
   for (const auto& [options, says] :
        {std::pair{"--view above", "expected front, back, left, right, top, bottom, iso"},
         {"--elevation 91", "looks straight down or up"},
-        {"--zoom 0", "must be greater than 0"},
-        {"--view top --eye 1,2,3", "--view: turns the camera that sees everything"}})
+        {"--zoom 0", "must be greater than 0, got '0'"},
+        {"--fov 180", "must lie between 0 and 180 degrees, got '180'"},
+        {"--orthographic 0", "the height must be greater than 0, got '0'"},
+        {"--view top --eye 1,2,3", "--view: turns the camera of --fit"}})
     refused(Args("render --look plain builtin:boxes -o q.png") + options, says);
 }
 

@@ -47,7 +47,7 @@ TEST_F(OutOfCoreProgram, SaysWhatItDidAndRefusesByName) {
         "--rasterizer tiled", "--transparency wboit", "--shadows --lights studio"}) {
     const std::string option = args == "--shader id" ? args : args.substr(0, args.find(' '));
     EXPECT_TRUE(holds(refused("render t.ply --out-of-core always -o q_%d.png " + args, option, 1),
-                      "not out of core"));
+                      "cannot be used out of core"));
   }
   write("a.ply", "ply\nformat ascii 1.0\n");
   EXPECT_EQ(run("render a.ply --out-of-core always -o r.png").status, 1);
@@ -69,7 +69,7 @@ TEST_F(OutOfCoreProgram, ALargePictureIsDrawnInBandsOfRows) {
   const std::string said = refused(
       "render t.ply --look studio --size 32768x32768 --out-of-core always --memory-limit 1G -o "
       "w.png",
-      "--memory-limit: 1024 MiB hold no picture of 32768x32768", 1);
+      "--memory-limit: 1024 MiB cannot hold a picture of 32768x32768", 1);
   EXPECT_TRUE(holds(said, "--look plain"));
 }
 
@@ -87,7 +87,7 @@ TEST_F(OutOfCoreProgram, ReadsASmallFileOfManyNodes) {
   must(render + "-o read.png");
   const std::string said = must(render + "--memory-limit 64M -o p.png");
   EXPECT_TRUE(holds(said, "its nodes and JSON take about"));
-  EXPECT_TRUE(holds(said, "it is read, beyond the memory limit"));
+  EXPECT_TRUE(holds(said, "the file is read whole, beyond the memory limit"));
   EXPECT_EQ(read("p.png"), read("read.png"));
   // A command line that asks for out of core gets an error.
   EXPECT_EQ(run(render + "--out-of-core always --memory-limit 64M -o q.png").status, 1);

@@ -94,13 +94,13 @@ TEST_F(Overwrite, OfAnotherOutputIsRefused) {
   write("one.npy", "");
   fs::create_hard_link(path("one.npy"), path("other.npy"));
   refused("render t.ply -o one.npy --depth other.npy", "--depth", "other.npy",
-          "also what -o is written to");
+          "also the file of -o");
   refused("render t.ply --turntable 2 -o s%01d.npy --depth s%d.npy", "--depth", "s0.npy",
-          "also what -o is written to");
+          "also the file of -o");
   refused("render t.ply --turntable 11 -o s%02d.npy --depth s%d.npy", "--depth", "s10.npy",
-          "also what -o is written to");
+          "also the file of -o");
   refused("render t.ply --turntable 2 --output-format png -o s%d.json --stats s1.json", "-o",
-          "s1.json", "also what --stats is written to");
+          "s1.json", "also the file of --stats");
 }
 
 }  // namespace

@@ -80,16 +80,18 @@ TEST_F(Pipes, AreRefusedWhereTheyCannotBeMeant) {
     EXPECT_EQ(r.out, "");
     EXPECT_TRUE(holds(r.err, says));
   };
-  refused("render builtin:sphere -o - --stats -", "--stats: standard output is also what -o");
-  refused("terrain --function noise -o - --stats -", "--stats: standard output is also what -o");
+  refused("render builtin:sphere -o - --stats -",
+          "--stats: standard output is also the file of -o");
+  refused("terrain --function noise -o - --stats -",
+          "--stats: standard output is also the file of -o");
   refused("render builtin:sphere -o - --depth /dev/stdout", "--depth: standard output is also");
   refused("render - -o p.png", "--format ply");
   refused("render /dev/stdin -o p.png", "--format ply");
   refused("info -", "--format ply");
-  refused("render - - --format ply -o p.png", "standard input can be read once");
+  refused("render - - --format ply -o p.png", "standard input can be read only once");
   refused("render - --format mesh -o p.png", "--format: expected one of obj, ply");
   refused("render builtin:sphere -o p.png --output-format npy", "-o: the name of p.png says .png");
-  refused("render builtin:sphere --depth d.npy --output-format npy", "--output-format: is for -o");
+  refused("render builtin:sphere --depth d.npy --output-format npy", "--output-format: needs -o");
   EXPECT_TRUE(files().empty());
 }
 

@@ -77,12 +77,12 @@ TEST_F(Sequences, RefuseWhatCannotBeMeant) {
     EXPECT_TRUE(files().empty());
   };
   refused("-o t.png", "-o: there are 4 pictures: number them, as in frame_%04d.png");
-  refused("-o t%d.png --frames 3", "--frames: leaves no room for --turntable");
-  refused("-o t%d.png --path p.json", "--turntable: leaves no room for --path");
+  refused("-o t%d.png --frames 3", "--frames: cannot go with --turntable");
+  refused("-o t%d.png --path p.json", "--turntable: cannot go with --path");
   refused("-o t%d.png --camera 0", "--turntable: the camera of a file has no target");
   refused("-o t%d.png --turntable 0", "--turntable");
   Program::refused("render --look plain builtin:boxes -o p.png --fps 3",
-                   "--fps: is for --path and --turntable");
+                   "--fps: needs --path or --turntable");
 }
 
 class DepthUnit : public Program {
@@ -120,7 +120,7 @@ TEST_F(DepthUnit, ReversedIsWhatItWasAndStatsHaveTheFormula) {
 }
 
 TEST_F(DepthUnit, BelongsToDepth) {
-  refused("render --look plain w.obj -o p.png --depth-unit world", "--depth-unit: is for --depth");
+  refused("render --look plain w.obj -o p.png --depth-unit world", "--depth-unit: needs --depth");
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ TEST_F(Suggestions, OfFilesInAFolder) {
 
 TEST_F(Suggestions, OfWhatToLeaveOut) {
   refused("render a.ply --fit --eye 1,2,3 -o p.png",
-          "--fit: puts the camera where it sees everything, --eye where you say: leave one");
+          "--fit: shows the whole scene, but --eye places the camera: leave one");
   refused("render a.ply -o x.jpg",
           "-o: the name of the file must end in .png, .exr, .npy (with --path also .mp4)");
 }

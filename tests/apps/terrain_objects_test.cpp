@@ -194,7 +194,7 @@ TEST_F(TerrainObjectsProgram, RefusesWhatCannotStand) {
   refuse(2, "scale must be above 0", "--mesh " + kBox + "@x=1,y=1,scale=0");
   refuse(2, "say where it stands", "--sprite tree.png");
   refuse(2, "--projection planar", "--mesh " + kBox + "@x=1,y=1 --projection cylindrical");
-  refuse(2, "depth is of a whole picture", "--mesh " + kBox + "@x=1,y=1 --shader depth");
+  refuse(2, "depth needs a whole picture", "--mesh " + kBox + "@x=1,y=1 --shader depth");
   EXPECT_EQ(run(with("--mesh " + kBox + "@x=60,y=1,height=3")).status, 0)
       << "a height is ground enough";
 }

@@ -272,7 +272,7 @@ TEST_F(TerrainInWindow, ACommandLineDrawsTheSamePicture) {
   subject->handle(key("t"));
   expect_said("--tile mirror");
   EXPECT_TRUE(
-      holds(subject->same_picture(9, 9, "a.png").back().second, "no words for it: --step, --dz"));
+      holds(subject->same_picture(9, 9, "a.png").back().second, "does not have it: --step, --dz"));
 }
 
 TEST_F(TerrainInWindow, LightsAndWhatIsOverTheGroundAreTheCommands) {
@@ -466,8 +466,8 @@ TEST_F(TerrainAlongAPath, RefusesWhatCannotBeMeant) {
   refused("--path p.json -o one.png", "number them, as in frame_%04d.png");
   refused("--path p.json -o a%d.png --depth d.npy", "frame_%04d.npy");
   refused("--path p.json -o a%s.png", "expected a name with one %d");
-  refused("--path p.json -o a%d.png --frames 3", "leaves no room for --path");
-  refused("--fps 3 -o a.png", "is for --path");
+  refused("--path p.json -o a%d.png --frames 3", "cannot go with --path");
+  refused("--fps 3 -o a.png", "needs --path");
   refused("-o a.mp4", "give --path");
   refused("--path q.json -o a.png", "unknown name 'eye'");
   refused("--path none.json -o a.png", "none.json");

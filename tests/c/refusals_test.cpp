@@ -114,7 +114,7 @@ TEST(CRefusals, Arrays) {
   expect_refused(rastrum_instance_set_scalars(scene, 0, kNone, RASTRUM_PER_VERTEX, 0),
                  "there is no colour map 0: the scene has 0");
   expect_ok(rastrum_scene_add_spheres(scene, array_of(kSquare), 1, nullptr));
-  expect_refused(rastrum_instance_set_colors(scene, 1, kNone, RASTRUM_PER_FACE), "meshes' alone");
+  expect_refused(rastrum_instance_set_colors(scene, 1, kNone, RASTRUM_PER_FACE), "only meshes");
   expect_refused(rastrum_instance_set_offsets(scene, 1, kNone), "instance 1: its kind of geometry");
   expect_ok(p.render());
 
@@ -194,7 +194,7 @@ TEST(CRefusals, OtherKinds) {
   const CPicture p = square();
   std::vector<Vec4> linear(256);
   expect_ok(rastrum_frame_set_target(p.frame.get(), "linear", linear.data(), 4096, 0));
-  expect_refused(p.render(), "the linear target is of the shader 'material'", RASTRUM_UNSUPPORTED);
+  expect_refused(p.render(), "the linear target needs the shader 'material'", RASTRUM_UNSUPPORTED);
   expect_ok(rastrum_frame_set_target(p.frame.get(), "linear", nullptr, 0, 0));
   expect_ok(p.render());
   expect_ok(rastrum_frame_set_stopped(p.frame.get(), 1));

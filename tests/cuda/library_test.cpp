@@ -45,7 +45,7 @@ TEST(CudaLibrary, IsFoundByItsNameAndShowsOneFunction) {
 TEST(CudaLibrary, OfAnotherBuildIsRefused) {
   const parallel::OpenedCudaLibrary other = parallel::open_cuda_library(RASTRUM_OTHER_LIBRARY);
   EXPECT_EQ(other.library, nullptr);
-  EXPECT_TRUE(holds(other.why_not, "is of Rastrum 0.0.1-of-another, and this program of "));
+  EXPECT_TRUE(holds(other.why_not, "belongs to Rastrum 0.0.1-of-another, but this program to "));
 }
 
 TEST(CudaLibrary, DrawsByItsRasterizersAndTheRows) {

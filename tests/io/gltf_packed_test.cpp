@@ -252,7 +252,7 @@ TEST(GltfMeshopt, WhatDoesNotFitIsRefused) {
       {R"(,"filter":"NONE")", R"(,"filter":"QUATERNION")", ".byteStride: must be 8"},
       {size, length + "70", "cannot hold 4800"},
       {size, length + std::to_string(positions.size() - 1),
-       place + ": is no sound stream of ATTRIBUTES"},
+       place + ": is not a valid stream of ATTRIBUTES"},
       {size, length + "1000000", "beyond its buffer"},
   };
   for (const auto& [from, to, says] : kMistakes) refused(says, changed(text, from, to));
@@ -375,7 +375,7 @@ TEST(GltfDraco, WhatDoesNotFitIsRefused) {
             draco_text(s.bytes, s.vertices, s.triangles + 1));
     refused("vertices, but", draco_text(s.bytes, s.vertices - 1, s.triangles));
     refused("cut off", text(s.bytes.substr(0, 11)));
-    refused("is no sound stream", text(s.bytes.substr(0, s.bytes.size() / 2)));
+    refused("is not a valid stream", text(s.bytes.substr(0, s.bytes.size() / 2)));
     refused("is no stream", text("PK" + s.bytes));
     std::string old = s.bytes;
     old[6] = 1;

@@ -348,7 +348,7 @@ TEST(Gltf, LightsThatCannotBeMeantAreRefused) {
                Error);
   const Scene unknown = read(lit(R"({"type":"laser"})", on));
   EXPECT_TRUE(unknown.lights.empty());
-  EXPECT_TRUE(holds(io::describe(unknown), "is of a kind that is not known"));
+  EXPECT_TRUE(holds(io::describe(unknown), "has a kind that is not known"));
   EXPECT_NO_THROW((void)read(lit(R"({"type":"point"})", on)));
 }
 

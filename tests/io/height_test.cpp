@@ -400,7 +400,7 @@ TEST(ReadHeights, NamesWhatItDoesNotRead) {
   refused("no kind of height map", folder.write("a.txt", "1 2"), Errc::unsupported);
 #ifdef RASTRUM_HAS_GDAL
   refused("gone.tif", folder.path("gone.tif"), Errc::not_found);
-  refused("no sound GeoTIFF", folder.write("bad.tif", "II*"), Errc::bad_format);
+  refused("not a valid GeoTIFF", folder.write("bad.tif", "II*"), Errc::bad_format);
 #else
   refused("gone.tif", folder.path("gone.tif"), Errc::unsupported);
   refused("libgdal-dev", folder.write("bad.tif", "II*"), Errc::unsupported);

@@ -188,7 +188,7 @@ TEST(LightPictures, OfDisplayValuesBecomeLinear) {
   EXPECT_EQ(light(0, 0).x, 0);
   EXPECT_EQ(light(0, 0).y, 1);
   EXPECT_NEAR(light(0, 0).z, std::pow((128 / 255.0 + 0.055) / 1.055, 2.4), 1e-7);
-  expect_refused("none of .hdr", Errc::unsupported, [&] { (void)decode("P6 2 1 255 "); });
+  expect_refused("give an .hdr", Errc::unsupported, [&] { (void)decode("P6 2 1 255 "); });
 }
 
 }  // namespace

@@ -88,7 +88,7 @@ TEST(StoredPng, WhatIsNotSoundIsLeftToLibpng) {
   const std::string good = png.many();
   const auto expect_unsound = [](const std::string& file) {
     expect_left_alone(file);
-    expect_refused("a.png: is not a sound PNG: ", Errc::bad_format,
+    expect_refused("a.png: is not a valid PNG: ", Errc::bad_format,
                    [&] { (void)io::decode_image(bytes_of(file), "a.png"); });
   };
   std::string flipped = png.one();

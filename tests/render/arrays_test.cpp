@@ -286,9 +286,10 @@ TEST(Arrays, TypesTellTheirNumbers) {
   EXPECT_EQ(ArrayView<float>(wide)[5], 6.1F);
   EXPECT_TRUE(Positions(std::span<const float>()).empty());
   expect_refused(
-      "6 numbers are no whole values, which have 4 each; colours without alpha are ArrayView::rgb",
+      "6 numbers do not make up whole values, which have 4 each; colours without alpha are "
+      "ArrayView::rgb",
       [&] { (void)ArrayView<Vec4>(flat); });
-  expect_refused("5 numbers are no whole values, which have 3 each",
+  expect_refused("5 numbers do not make up whole values, which have 3 each",
                  [&] { (void)Positions(std::span(wide).first(5)); });
 
   const std::vector<std::array<std::uint32_t, 3>> triples{{0, 1, 2}, {3, 4, 5}};

@@ -448,7 +448,7 @@ TEST(OnTerrain, RefusesWhatCannotBeComposed) {
   samples.samples = 4;
   EXPECT_TRUE(holds(message(good, samples, targets), "one sample"));
   EXPECT_TRUE(holds(message(good, render_options(), targets, {1}), "the number 1"));
-  EXPECT_TRUE(holds(message(good, render_options(), {color, {}}), "its depth is needed"));
+  EXPECT_TRUE(holds(message(good, render_options(), {color, {}}), "need its depth"));
   EXPECT_EQ(message(good, render_options(), {color, small}),
             "the depth target is 8x8 and must be 240x160, as the frame is");
   EXPECT_EQ(message(good, render_options(), {small_color, depth}),

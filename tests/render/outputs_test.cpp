@@ -379,7 +379,7 @@ TEST(Outputs, RefuseWhatTheyAreNotFor) {
   RenderOptions in_place = options();
   in_place.in_place = true;
   if (Painter(in_place).options().device == Device::cuda)
-    expect_refused("of the targets there are", Errc::unsupported, [&] {
+    expect_refused("only the targets color8", Errc::unsupported, [&] {
       Painter(in_place).render(two.scene(), two.camera, {.positions = positions});
     });
   const Program program(
@@ -391,7 +391,7 @@ TEST(Outputs, RefuseWhatTheyAreNotFor) {
       });
   const ProgramDraw own = program.draw(3);
   Renderer renderer(options());
-  expect_refused("positions target is of a scene", Errc::unsupported, [&] {
+  expect_refused("positions target needs a scene", Errc::unsupported, [&] {
     renderer.draw({&own, 1}, options(), {.positions = positions});
   });
   // Targets that need no scene are still drawn.

@@ -10,7 +10,7 @@ class CheckWords(CheckedTree):
 
     def setUp(self):
         super().setUp()
-        for page in ("README.md", "CHANGELOG.md", "docs/scale.md", "rastrum/mesh.hpp"):
+        for page in ("README.md", "CHANGELOG.md", "docs/scale.md", "rastrum/mesh.hpp", "python/rastrum/_view.py"):
             self.write(page, "")
 
     def test_project_passes(self):
@@ -19,7 +19,9 @@ class CheckWords(CheckedTree):
     def test_what_is_no_prose_passes(self):
         self.write("README.md", "# What moves\n\nWhat is a tile? It is 8 × 8 pixels.\n\n```sh\nx\nWhat no\n" +
                    "```\nA cell of `x. What y` and\n\n| long row " + "of words " * 20 + "|\n")
-        self.write("rastrum/mesh.hpp", 'int x;  // of a mesh\nconst char* s = "a. What";\n')
+        self.write("rastrum/mesh.hpp", 'int x;  // of a mesh\nconst char* s = "a part of it. What is it?";\nchar c = \'"\';\n')
+        self.write("tests/mesh.cpp", 'const char* s = "It is. What else";\n')
+        self.write("python/rastrum/_view.py", '# What a comment says.\nx = "a part. Whose? What?"\n')
         self.write("docs/log/README.md", "What was tried.\n")
         self.write("docs/decisions/0002-a.md", "**What we do.** It is so.\n\n**What follows.**\n- One.\n")
         self.assertEqual(self.check(), (0, ""))
@@ -45,6 +47,21 @@ class CheckWords(CheckedTree):
                 self.write(source, text)
                 self.assert_caught(f"{source}:{line}: ", "")
                 self.write(source, "")
+
+    def test_strings_of_sources(self):
+        for text, line in (('say("Of all");\n', 1), ('x = 1\'000;\nsay("It is "\n    "so. Who "\n    "knows");\n', 3),
+                           ('say("Fine.\\nWhat no");\n', 1), ('say(\'"\', "Those");\n', 1), ('// "\nsay("What");\n', 2),
+                           ('say(R"(It is. Of all)");\n', 1)):
+            for source in ("rastrum/mesh.hpp", "apps/rastrum/main.cpp", "python/src/module.cpp"):
+                self.write(source, text)
+                self.assert_caught(f"{source}:{line}: ", "")
+                self.write(source, "")
+
+    def test_strings_of_python(self):
+        for text, line in (('"""Fine.\n\nWhat no.\n"""\n', 3), ('def f():\n    """It is. Of all."""\n', 2),
+                           ('x = 1\nraise Error(f"{x}: no. Those are.")\n', 2), ('x = ("It is so. "\n     "Who knows")\n', 1)):
+            self.write("python/rastrum/_view.py", text)
+            self.assert_caught(f"python/rastrum/_view.py:{line}: ", "")
 
     def test_long_line(self):
         self.write("README.md", f"![{'A word ' * 30}](a.png)\n")

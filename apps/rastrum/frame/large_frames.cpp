@@ -23,9 +23,9 @@ int rows_of(const LargeJob& job) {
   if (rows == 0 || why == nullptr) return rows;
   if (rows_at_once(job.arguments, limit) != 0)
     throw Error(Errc::out_of_memory,
-                "--memory-limit: " + mebibytes(limit) + " hold no picture of " +
-                    size_of(job.render) + ", and " + why +
-                    " a whole picture; without (--look plain) it is drawn in bands");
+                "--memory-limit: " + mebibytes(limit) + " cannot hold a picture of " +
+                    size_of(job.render) + ", but " + why +
+                    " a whole picture; without that (--look plain) it is drawn in bands");
   return 0;
 }
 

@@ -40,11 +40,11 @@ constexpr Phrases kPhrases[kFates] = {
     {"has a NaN or infinite vertex", "have a NaN or infinite vertex", "the file is damaged"},
     {"has no area", "have no area", "`rastrum info` tells what a file holds"},
     {"lies behind the camera", "lie behind the camera",
-     "--fit in the place of --eye, --target and --camera shows all of it"},
+     "--fit instead of --eye, --target and --camera shows all of it"},
     {"lies in front of the near plane", "lie in front of the near plane",
      "leave out --near, or give a smaller one"},
     {"lies outside of the view", "lie outside of the view",
-     "--fit in the place of --eye, --target and --camera shows all of it"},
+     "--fit instead of --eye, --target and --camera shows all of it"},
     {"faces the side that --cull leaves out", "face the side that --cull leaves out",
      "--cull none shows them"},
     {"shows the back of a single-sided material", "show the back of a single-sided material",
@@ -188,12 +188,13 @@ Emptiness why_empty(const FrameStats& frame, const FrameOptions& options, const 
                     const Camera& camera) {
   if (frame.triangles.input == 0)
     return {"there are no triangles to draw", "`rastrum info` tells what a file holds"};
-  if (frame.pixels_covered != 0) return {"--opacity 0 makes all of it transparent", "give more"};
+  if (frame.pixels_covered != 0)
+    return {"--opacity 0 makes all of it transparent", "give a larger one"};
   if (frame.fragments != 0 && !options.clip_planes.empty())
     return {"what is in view lies behind a --clip-plane", kPhrases[cut_away].remedy};
   if (frame.fragments != 0)
     return {"the alpha of its materials (MASK) cuts all of it out",
-            "the file's alphaCutoff and textures decide that, --heatmap shows where it is"};
+            "the file's alphaCutoff and textures decide that; --heatmap shows where it is"};
 
   const std::array<std::uint64_t, kFates> counts = census(options, scene, camera);
   std::vector<Fate> order;
@@ -201,7 +202,7 @@ Emptiness why_empty(const FrameStats& frame, const FrameOptions& options, const 
     if (counts[f] != 0) order.push_back(static_cast<Fate>(f));
   std::ranges::stable_sort(order, std::ranges::greater{}, [&](Fate f) { return counts[f]; });
   if (order.empty())  // points, lines and exact surfaces are not tested
-    return {"nothing of it lies in the view, or faces the camera", "--fit shows all"};
+    return {"nothing of it lies in the view and faces the camera", "--fit shows all"};
   const std::uint64_t input = frame.triangles.input;
   Emptiness why;
   if (order.size() == 1 && input == 1)

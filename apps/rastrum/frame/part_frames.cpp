@@ -34,8 +34,9 @@ int rows_of(const PartJob& job) {
   if (rows == 0 || why == nullptr) return rows;
   if (!job.quiet)
     warn(std::string(why) +
-         " a whole picture, so the first rank holds it; ranks draw it in bands of " +
-         std::to_string(rows) + " rows without (--look plain)");
+         " a whole picture, so the first rank holds all of it; without that (--look plain) ranks "
+         "draw it in bands of " +
+         std::to_string(rows) + " rows");
   return 0;
 }
 

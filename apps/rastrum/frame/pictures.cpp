@@ -79,10 +79,10 @@ int rows_at_once(const RenderArguments& a, std::uint64_t bytes) {
 }
 
 const char* why_whole(const RenderArguments& a, const Annotations& notes) {
-  if (notes.any()) return "words and effects are drawn over";
-  if (a.render.shader == Shader::depth) return "the shader depth stretches";
-  if (a.render.environment_behind) return "an environment is seen behind";
-  return a.hash ? "--hash is of" : nullptr;
+  if (notes.any()) return "words and effects need";
+  if (a.render.shader == Shader::depth) return "the shader depth needs";
+  if (a.render.environment_behind) return "an environment behind the picture needs";
+  return a.hash ? "--hash needs" : nullptr;
 }
 
 Targets make_targets(const Wanted& wanted, Size size, Pictures& pictures) {

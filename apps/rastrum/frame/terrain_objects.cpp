@@ -105,18 +105,16 @@ void add_terrain_objects(Parser app, TerrainObjectArguments& a) {
       a.objects.push_back(parse_object(name, text, is_sprite));
     });
   };
-  add_object(
-      "--mesh", "INPUT[@x=X,y=Y,...]",
-      "a file or builtin:SHAPE as `render` takes them, +y up, at cell X, Y; height=H of its "
-      "lowest point (the ground's), scale=S (1), turn=DEG counter-clockwise (0); rx, ry, rz, "
-      "color and opacity as `render` has them. Without a place its x, y and z are the "
-      "terrain's x, height and y. Can be repeated",
-      false);
-  add_object(
-      "--sprite", "FILE@x=X,y=Y,...",
-      "a .png or .jpg that faces the camera, blended by its alpha, at cell X, Y; height=H of "
-      "its foot (the ground's), size=S cells high (1). Can be repeated",
-      true);
+  add_object("--mesh", "INPUT[@x=X,y=Y,...]",
+             "a file or builtin:SHAPE as `render` takes them, +y up, at cell X, Y; height=H of its "
+             "lowest point (the ground's), scale=S (1), turn=DEG counter-clockwise (0); rx, ry, "
+             "rz, color and opacity as `render` has them. Without a place its x, y and z are the "
+             "terrain's x, height and y. May be repeated",
+             false);
+  add_object("--sprite", "FILE@x=X,y=Y,...",
+             "a .png or .jpg that faces the camera, blended by its alpha, at cell X, Y; height=H "
+             "of its foot (the ground's), size=S cells high (1). May be repeated",
+             true);
   add_shading_options(app, a.scene);
   add_blending_options(app, a.scene);
   add_rasterizer_options(app, a.scene);
@@ -127,12 +125,13 @@ void check_terrain_objects(const TerrainObjectArguments& a,
   if (a.objects.empty()) return;
   const char* option = a.objects.front().is_sprite ? "--sprite" : "--mesh";
   if (options.projection != terrain::Projection::planar)
-    throw UsageError(option, "triangles stay straight only with --projection planar");
+    throw UsageError(option, "needs --projection planar, where straight edges stay straight");
   if (a.scene.render.shader == Shader::depth)
-    throw UsageError("--shader", "depth is of a whole picture; on a terrain take another");
+    throw UsageError("--shader", "depth needs a whole picture; take another shader on a terrain");
   if (a.scene.render.tone != ToneMapping{} && a.scene.render.shader != Shader::automatic &&
       a.scene.render.shader != Shader::material)
-    throw UsageError("--shader", "--tone is of linear light, which material has; take that");
+    throw UsageError("--shader",
+                     "--tone needs linear light, which the shader material has; take that");
 }
 
 TerrainObjects::TerrainObjects(const TerrainObjectArguments& a, const TerrainLook& options,

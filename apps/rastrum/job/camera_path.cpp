@@ -87,7 +87,7 @@ PathKey read_key(const JsonFields::Element& element, const PathKey& before, bool
   read_vec3(fields, "up", c.up);
   const auto fov_deg = fields.number("fov");
   const auto height = fields.number("orthographic");
-  if (fov_deg && height) fields.fail("orthographic", "leaves no room for fov");
+  if (fov_deg && height) fields.fail("orthographic", "cannot go with fov");
   if (fov_deg && !(*fov_deg > 0 && *fov_deg < 180))
     fields.fail("fov", "must lie between 0 and 180 degrees");
   if (height && !(*height > 0)) fields.fail("orthographic", "the height must be greater than 0");
@@ -99,9 +99,9 @@ PathKey read_key(const JsonFields::Element& element, const PathKey& before, bool
   if (!first && c.orthographic != before.camera.orthographic)
     fields.fail("a path is orthographic in all keys or in none");
   if (!first && key.has_planes != before.has_planes)
-    fields.fail("near", "is given in the first key or in none");
+    fields.fail("near", "must be given in the first key or in none");
   if (!first && std::isinf(c.far_plane) != std::isinf(before.camera.far_plane))
-    fields.fail("far", "is inf in all keys or in none");
+    fields.fail("far", "must be inf in all keys or in none");
   check_camera(fields, key);
   return key;
 }
@@ -144,8 +144,9 @@ std::vector<double> frame_times(double first_s, double last_s, double fps) {
   // Rounding must not lose the last picture of a path of whole frames.
   const double count = std::floor((last_s - first_s) * fps * (1 + 1e-12)) + 1;
   if (!(count <= kMost))
-    throw Error(Errc::invalid_argument, "the path has " + std::to_string(count) +
-                                            " pictures, the most is a million; lower --fps");
+    throw Error(Errc::invalid_argument,
+                "the path has " + std::to_string(count) +
+                    " pictures, and at most a million are possible; lower --fps");
   std::vector<double> times(static_cast<std::size_t>(count));
   for (std::size_t i = 0; i < times.size(); ++i)
     times[i] = std::min(first_s + static_cast<double>(i) / fps, last_s);

@@ -61,7 +61,7 @@ LoadedTerrain::LoadedTerrain(const TerrainInput& input) {
   if (input.height.has_value() == !input.function.empty())
     throw UsageError("--height", "give a height map or --function, one of the two");
   if (input.color && !input.height)
-    throw UsageError("--color", "functions have colours by their height; it goes with --height");
+    throw UsageError("--color", "needs --height; a function is coloured by its heights");
   if (!input.height) {
     for (const terrain::FunctionInfo& info : terrain::named_functions()) {
       if (info.name != input.function) continue;

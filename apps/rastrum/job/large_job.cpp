@@ -21,35 +21,38 @@ constexpr std::uint64_t kLeastLimit = std::uint64_t{64} << 20;
 void check_options(const RenderArguments& a) {
   const auto refuse = [](bool given, const char* option, const char* why) {
     if (given)
-      throw Error(Errc::unsupported, std::string(option).append(": not out of core, ").append(why));
+      throw Error(Errc::unsupported,
+                  std::string(option).append(": cannot be used out of core, ").append(why));
   };
-  const char* const one = "which draws one picture; --out-of-core never reads the file";
+  const char* const one = "where one picture is drawn; `--out-of-core never` reads the whole file";
   refuse(!a.path.empty(), "--path", one);
   refuse(a.turntable != 0, "--turntable", one);
   refuse(a.time_s.has_value(), "--time", "where nothing moves");
   refuse(a.frames.has_value(), "--frames", one);
   refuse(static_cast<bool>(a.trace), "--trace",
-         "whose chunks are too many to list; --stats sums up");
-  refuse(static_cast<bool>(a.outputs.heatmap), "--heatmap", "which leaves out what is hidden");
-  refuse(static_cast<bool>(a.outputs.errors), "--show-errors", "which blends exactly");
-  refuse(a.view.file_camera.has_value(), "--camera", "which leaves the cameras of files alone");
-  refuse(a.lights.of_files, "--lights file", "which leaves the lights of files alone");
-  refuse(a.render.shadows, "--shadows", "since what is not seen casts shadows, too");
-  refuse(a.render.shader == Shader::id, "--shader id", "which draws other ids; take --ids");
+         "where the chunks are too many to list; --stats sums up");
+  refuse(static_cast<bool>(a.outputs.heatmap), "--heatmap", "where hidden fragments are left out");
+  refuse(static_cast<bool>(a.outputs.errors), "--show-errors",
+         "where every pixel is blended exactly");
+  refuse(a.view.file_camera.has_value(), "--camera", "where the cameras of files are not read");
+  refuse(a.lights.of_files, "--lights file", "where the lights of files are not read");
+  refuse(a.render.shadows, "--shadows", "since triangles that are not seen cast shadows, too");
+  refuse(a.render.shader == Shader::id, "--shader id", "where ids are numbered anew; take --ids");
   refuse(a.render.device != Device::threads && a.render.device != Device::serial, "--device",
-         "whose frames are the CPU's");
-  refuse(a.render.rasterizer != "auto", "--rasterizer", "which draws with 'auto'");
-  refuse(a.render.visibility != "auto", "--visibility", "which draws with 'auto'");
+         "where the CPU draws");
+  refuse(a.render.rasterizer != "auto", "--rasterizer", "where 'auto' draws");
+  refuse(a.render.visibility != "auto", "--visibility", "where 'auto' draws");
   refuse(
       a.render.transparency.method == Transparency::added && filter_of(a.render.transparency) == 0,
-      "--transparency", "which blends by exact, filter, unsorted or none");
+      "--transparency", "where the methods are exact, filter:K, unsorted and none");
   const AnnotationOptions& notes = a.annotations;
-  refuse(!notes.scalars.name.empty(), "--scalars", "since numbers have a range of the whole file");
-  refuse(notes.bounds, "--bounds", "which knows a part of the mesh at a time");
-  refuse(notes.edges, "--edges", "since what is not seen has edges, too");
+  refuse(!notes.scalars.name.empty(), "--scalars",
+         "since the range of the numbers needs the whole file");
+  refuse(notes.bounds, "--bounds", "where only a part of the mesh is known at a time");
+  refuse(notes.edges, "--edges", "since triangles that are not seen have edges, too");
   refuse(!a.reading.options.allow_outside, "--allow-outside no",
-         "which reads what a file names; --out-of-core never reads the file so");
-  refuse(a.inputs.size() != 1, "INPUT", "which draws one file");
+         "where the files that a file names are read; `--out-of-core never` obeys it");
+  refuse(a.inputs.size() != 1, "INPUT", "where one file is drawn");
 }
 
 std::uint64_t limit_of(const RenderArguments& a) {
@@ -81,7 +84,8 @@ std::optional<OutOfCoreFile> large_input(const RenderArguments& a) {
     // out of core than read whole.
     const bool is_small = e.code() == Errc::out_of_memory && bytes <= limit;
     if (e.code() != Errc::unsupported && !is_small) throw;
-    if (!a.quiet) warn(std::string(e.what()).append("; it is read, beyond the memory limit"));
+    if (!a.quiet)
+      warn(std::string(e.what()).append("; the file is read whole, beyond the memory limit"));
     return {};
   }
 }

@@ -23,7 +23,7 @@ void check_for_ranks(const RenderArguments& a) {
   const auto refuse = [](bool given, const char* option, const char* why) {
     if (given)
       throw Error(Errc::unsupported,
-                  std::string(option).append(": not with several ranks, ").append(why));
+                  std::string(option).append(": cannot be used with several ranks, ").append(why));
   };
   refuse(!a.path.empty(), "--path", "which draw one picture");
   refuse(a.turntable != 0, "--turntable", "which draw one picture");
@@ -31,12 +31,13 @@ void check_for_ranks(const RenderArguments& a) {
   refuse(a.frames.has_value(), "--frames", "which draw one picture");
   refuse(static_cast<bool>(a.outputs.heatmap), "--heatmap", "since each counts its own fragments");
   refuse(static_cast<bool>(a.outputs.errors), "--show-errors", "which blend exactly");
-  refuse(static_cast<bool>(a.trace), "--trace", "each of which has times of its own");
-  refuse(a.render.environment_behind, "--environment-behind", "which blend surfaces alone");
+  refuse(static_cast<bool>(a.trace), "--trace", "each of which has its own times");
+  refuse(a.render.environment_behind, "--environment-behind", "which do not draw the environment");
   refuse(a.render.rasterizer != "auto", "--rasterizer", "which draw with 'auto'");
   refuse(a.render.visibility != "auto", "--visibility", "which draw with 'auto'");
   for (const std::string& input : a.inputs)
-    refuse(parse_input(input).source == "-", "INPUT -", "of which one could read standard input");
+    refuse(parse_input(input).source == "-", "INPUT -",
+           "since only one of them could read standard input");
 }
 
 std::uint64_t bytes_of(const std::string& input) {

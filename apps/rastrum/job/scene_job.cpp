@@ -37,7 +37,7 @@ SceneJob::SceneJob(const RenderArguments& a)
   if (a.prepares) {
     if (moves)
       throw UsageError("--prepare",
-                       "is of meshes that stay as they are; this file moves along --path");
+                       "needs meshes that stay as they are, but this file moves along --path");
     timeline.measure("prepare", "prepare", [&] { binding->prepare(render.threads); });
   }
   render.shader = shader_of(render.shader, inputs.has_materials);

@@ -23,16 +23,20 @@ void add_number(Parser app, const char* option, const char* type, const char* he
 }  // namespace
 
 void add_word_options(Parser app, WordOptions& a) {
-  add(app, "--title", "TEXT", "words at the top of the picture, UTF-8, \\n between lines",
+  add(app, "--title", "TEXT",
+      "write these words at the top of the picture; UTF-8, \\n begins a new line",
       [&a](const std::string& s) { a.title = s; });
   app.add_repeated("--caption", "TEXT",
-                   "smaller words: the first one in the bottom right corner, then the top left, "
-                   "top right, bottom left",
+                   "write smaller words in a corner: the first ones at the bottom right, then top "
+                   "left, top right, bottom left; may be repeated",
                    [&a](const std::string& s) {
-                     if (a.captions.size() == 4) throw UsageError("--caption", "there are four");
+                     if (a.captions.size() == 4)
+                       throw UsageError("--caption",
+                                        "at most four captions are possible, one in each corner");
                      a.captions.push_back(s);
                    });
-  add(app, "--text-scale", "S", "size of all words and lines of these (1)",
+  add(app, "--text-scale", "S",
+      "scale all words, and the lines of --bar, --axes and --bounds (default: 1)",
       [&a](const std::string& s) {
         a.scale = parse_number_that(
             "--text-scale", s, [](double scale) { return scale > 0 && scale <= 100; },
@@ -45,34 +49,40 @@ void add_annotation_options(Parser app, AnnotationOptions& a) {
   add_scalar_options(app, a.scalars);
   app = app.under("Words and effects");
   add_word_options(app, a.words);
-  app.add_flag("--axes", a.axes, "the directions of x, y and z in the bottom left corner");
+  app.add_flag("--axes", a.axes, "draw the directions of x, y and z in the bottom left corner");
   app.add_flag("--bounds", a.bounds,
-               "a box around the scene with ticks and numbers; the fitted camera leaves a margin");
+               "draw a box around the scene with ticks and numbers; the fitted camera leaves a "
+               "margin for it");
   app.add_flag("--occlusion", a.occlusion,
-               "darken what other surfaces take light from (ambient occlusion)");
+               "darken places where nearby surfaces shut out light (ambient occlusion)");
   add_number(app, "--occlusion-radius", "R",
-             "how far surfaces take light, in the scene's units (0.15 of the scene's radius)",
+             "how far away a surface still shuts out light, in the scene's units (default: 0.15 of "
+             "the scene's radius)",
              a.occlusion_radius, 1e-37, 1e37);
-  add_number(app, "--occlusion-strength", "S", "how much (1)", a.occlusion_strength, 0, 16);
+  add_number(app, "--occlusion-strength", "S", "how strongly --occlusion darkens (default: 1)",
+             a.occlusion_strength, 0, 16);
   app.add_flag("--edl", a.dome,
-               "darken what lies behind its neighbours (eye-dome lighting): shape for points");
-  add_number(app, "--edl-strength", "S", "how much (1)", a.dome_strength, 0, 100);
-  app.add_flag("--silhouettes", a.silhouettes,
-               "black lines where surfaces end, bend by more than 35 degrees or another begins");
-  app.add_flag("--edges", a.edges,
-               "the edges of the meshes as black lines on what is seen of them");
+               "darken what lies behind its neighbours (eye-dome lighting); it gives clouds of "
+               "points a shape");
+  add_number(app, "--edl-strength", "S", "how strongly --edl darkens (default: 1)", a.dome_strength,
+             0, 100);
+  app.add_flag(
+      "--silhouettes", a.silhouettes,
+      "draw a black line where a surface ends, bends by more than 35 degrees or meets another one");
+  app.add_flag("--edges", a.edges, "draw the visible edges of the meshes as black lines");
   add_number_that(
       app, "--edge-angle", "DEG",
-      "of edges between two faces those that meet at more, as 30 for creases and borders (0: all)",
+      "draw an edge between two faces only where they meet at more than this angle; 30 leaves "
+      "creases and borders (default: 0, all edges)",
       a.edge_angle, [](double deg) { return deg >= 0 && deg <= 180; },
       "must lie in 0 to 180 degrees");
-  add_number(app, "--edge-width", "PX", "how wide (1)", a.edge_width, 0, 64);
+  add_number(app, "--edge-width", "PX", "width of the lines of --edges in pixels (default: 1)",
+             a.edge_width, 0, 64);
 }
 
 void check_words(const WordOptions& a, bool has_colors) {
   if (a.any() && !has_colors)
-    throw UsageError(a.title.empty() ? "--caption" : "--title",
-                     "is written into a picture: give -o");
+    throw UsageError(a.title.empty() ? "--caption" : "--title", "needs a picture: give -o");
 }
 
 void check_annotations(const AnnotationOptions& a, bool has_colors) {
@@ -85,15 +95,16 @@ void check_annotations(const AnnotationOptions& a, bool has_colors) {
                      : a.dome      ? "--edl"
                      : a.edges     ? "--edges"
                                    : "--silhouettes",
-                     "is drawn into a picture: give -o");
+                     "needs a picture: give -o");
   if ((a.occlusion_radius || a.occlusion_strength) && !a.occlusion)
     throw UsageError(a.occlusion_radius ? "--occlusion-radius" : "--occlusion-strength",
-                     "is for --occlusion");
+                     "needs --occlusion");
   if ((a.edge_angle || a.edge_width) && !a.edges)
-    throw UsageError(a.edge_angle ? "--edge-angle" : "--edge-width", "is for --edges");
-  if (a.dome_strength && !a.dome) throw UsageError("--edl-strength", "is for --edl");
+    throw UsageError(a.edge_angle ? "--edge-angle" : "--edge-width", "needs --edges");
+  if (a.dome_strength && !a.dome) throw UsageError("--edl-strength", "needs --edl");
   if (a.words.scale_given && !a.words.any() && !a.scalars.bar() && !a.axes && !a.bounds)
-    throw UsageError("--text-scale", "is for --title, --caption, --bar, --axes and --bounds");
+    throw UsageError("--text-scale",
+                     "scales --title, --caption, --bar, --axes and --bounds; give one of them");
 }
 
 std::string missing_glyphs(const WordOptions& a, const std::string& more) {

@@ -95,25 +95,27 @@ Option add_vec3(Parser& app, const char* name, const char* type, const std::stri
 /// --size: members `width` and `height`.
 template <class Frame>
 void add_size(Parser& app, Frame& frame) {
-  add(app, "--size", "WxH", "pixels, up to 32768x32768 (1280x720)", [&frame](const std::string& s) {
-    const Size size = parse_size("--size", s);
-    frame.width = size.width;
-    frame.height = size.height;
-  });
+  add(app, "--size", "WxH", "size of the picture in pixels, up to 32768x32768 (default: 1280x720)",
+      [&frame](const std::string& s) {
+        const Size size = parse_size("--size", s);
+        frame.width = size.width;
+        frame.height = size.height;
+      });
 }
 /// --device, --threads and --isa: members of these names.
 template <class Options>
 void add_device_options(Parser& app, Options& o) {
-  add_choice(app, "--device", "NAME", "serial, threads, cuda, auto (threads)", o.device,
+  add_choice(app, "--device", "NAME", "what draws: serial, threads, cuda, auto (default: threads)",
+             o.device,
              {{"serial", Device::serial},
               {"threads", Device::threads},
               {"cuda", Device::cuda},
               {"auto", Device::automatic}});
-  add_integer(app, "--threads", "N", "(all)", o.threads, 1, 4096);
+  add_integer(app, "--threads", "N", "how many threads draw (default: all)", o.threads, 1, 4096);
   add(app, "--isa", "NAME",
       "instruction set; this machine has " +
           joined(std::views::transform(available_isas(), [](Isa isa) { return name(isa); })) +
-          " (the last)",
+          " (default: the last)",
       [&o](const std::string& s) {
         o.isa = choose<Isa>("--isa", s,
                             {{"scalar", Isa::scalar},

@@ -12,10 +12,10 @@
 
 namespace rastrum::cli {
 void add_camera_options(Parser app, ViewOptions& v) {
-  app = app.under("Camera (what is not given is taken from --fit)");
+  app = app.under("Camera (--fit decides what you do not give)");
   add(app, "--fit", "[NAME]",
-      "look at all that is there, the default; tight: the scene fills the picture; sphere: a ball "
-      "around it does (tight)",
+      "show the whole scene, as without any of these options; tight: the scene fills the picture; "
+      "sphere: a ball around it does (default: tight)",
       [&v](const std::string& s) {
         v.fit_given = true;
         if (s.empty()) return;
@@ -26,9 +26,9 @@ void add_camera_options(Parser app, ViewOptions& v) {
       })
       ->expected(0, 1);
   add(app, "--view", "NAME",
-      "whence: " + joined(view_names()) +
-          "; with +y or --up upward (iso; of render with --azimuth, --elevation or --roll, and of "
-          "view: front)",
+      "where the eye stands: " + joined(view_names()) +
+          "; +y or --up points upward (default: iso; front for view, and for render with "
+          "--azimuth, --elevation or --roll)",
       [&v](const std::string& s) {
         const std::vector<std::string_view> names = view_names();
         const auto found = std::ranges::find(names, s);
@@ -36,37 +36,44 @@ void add_camera_options(Parser app, ViewOptions& v) {
           throw UsageError("--view", "expected " + joined(names) + ", got '" + s + "'");
         v.view = static_cast<ViewName>(found - names.begin());
       });
-  add_number(app, "--azimuth", "DEG", "the eye goes around what it sees, to the right",
-             v.azimuth_deg);
-  add_number(app, "--elevation", "DEG", "and upward", v.elevation_deg);
-  add_number(app, "--roll", "DEG", "the picture turns, counter-clockwise", v.roll_deg);
-  add_number(app, "--zoom", "TIMES", "a picture so many times as large", v.zoom);
-  add_integer(app, "--camera", "N", "the N-th camera of the files, from 0", v.file_camera, 0,
+  add_number(app, "--azimuth", "DEG", "move the eye around the scene, to the right", v.azimuth_deg);
+  add_number(app, "--elevation", "DEG", "move the eye around the scene, upward", v.elevation_deg);
+  add_number(app, "--roll", "DEG", "turn the picture counter-clockwise", v.roll_deg);
+  add_number_that(app, "--zoom", "TIMES", "show everything so many times as large", v.zoom,
+                  is_above_zero, "must be greater than 0");
+  add_integer(app, "--camera", "N", "take the N-th camera of the files, from 0", v.file_camera, 0,
               std::numeric_limits<int>::max());
   add_vec3(app, "--eye", "X,Y,Z", "where the camera stands", v.eye);
-  add_vec3(app, "--target", "X,Y,Z", "what it looks at", v.target);
-  add(app, "--up", "X,Y,Z", "which way is up in the picture; also x, y or z (0,1,0)",
+  add_vec3(app, "--target", "X,Y,Z", "what the camera looks at", v.target);
+  add(app, "--up", "X,Y,Z",
+      "which direction is up in the picture; x, y and z are possible, too (default: 0,1,0)",
       [&v](const std::string& s) {
         v.up = s == "x"   ? Vec3d{1, 0, 0}
                : s == "y" ? Vec3d{0, 1, 0}
                : s == "z" ? Vec3d{0, 0, 1}
                           : parse_vec3("--up", s);
       });
-  add_number(app, "--fov", "DEG",
-             "field of view across the smaller side (60; 30 where nothing is said of the camera)",
-             v.fov_deg);
-  add_number(app, "--near", "N", "distance of the near plane (just before the scene)",
+  add_number_that(
+      app, "--fov", "DEG",
+      "field of view across the smaller side (default: 60; 30 if no option tells about the camera)",
+      v.fov_deg, [](double degrees) { return degrees > 0 && degrees < 180; },
+      "must lie between 0 and 180 degrees");
+  add_number(app, "--near", "N", "distance of the near plane (default: just before the scene)",
              v.near_plane);
-  add(app, "--far", "F|inf", "distance of the far plane (inf; orthographic: behind the scene)",
+  add(app, "--far", "F|inf",
+      "distance of the far plane (default: inf; orthographic: behind the scene)",
       [&v](const std::string& s) {
         v.far_plane =
             s == "inf" ? std::numeric_limits<double>::infinity() : parse_number("--far", s);
       });
   add(app, "--orthographic", "HEIGHT|fit",
-      "parallel projection, HEIGHT world units across the smaller side",
+      "use a parallel projection, HEIGHT world units across the smaller side; fit: as many as the "
+      "scene needs",
       [&v](const std::string& s) {
         v.orthographic = true;
-        if (s != "fit") v.orthographic_height = parse_number("--orthographic", s);
+        if (s != "fit")
+          v.orthographic_height = parse_number_that("--orthographic", s, is_above_zero,
+                                                    "the height must be greater than 0");
       });
 }
 
@@ -85,22 +92,19 @@ View view_of(const ViewOptions& o) {
 void check_view(const ViewOptions& o) {
   if (o.fit_given && (o.eye || o.target || o.file_camera)) {
     const std::string other = o.eye ? "--eye" : o.target ? "--target" : "--camera";
-    throw UsageError("--fit", "puts the camera where it sees everything, " + other +
-                                  " where you say: leave one of them out");
+    throw UsageError("--fit", "shows the whole scene, but " + other +
+                                  " places the camera: leave one of them out");
   }
   if (o.has_view() && (o.eye || o.target || o.file_camera))
     throw UsageError(o.view            ? "--view"
                      : o.azimuth_deg   ? "--azimuth"
                      : o.elevation_deg ? "--elevation"
                                        : "--roll",
-                     "turns the camera that sees everything; with --eye, --target and --camera it "
-                     "stands where they say");
+                     "turns the camera of --fit, but --eye, --target and --camera place the "
+                     "camera: leave one of them out");
   if (o.file_camera && o.orthographic)
-    throw UsageError("--orthographic", "the camera of a file has a projection of its own");
-  if (o.fov_deg && !(*o.fov_deg > 0 && *o.fov_deg < 180))
-    throw UsageError("--fov", "must lie between 0 and 180 degrees");
-  if (o.zoom && !(*o.zoom > 0 && std::isfinite(*o.zoom)))
-    throw UsageError("--zoom", "must be greater than 0");
+    throw UsageError("--orthographic",
+                     "the camera of a file has its own projection: leave out this or --camera");
   if (o.has_view()) (void)view_of(o);
   if (o.near_plane && !o.orthographic && !o.file_camera && !(*o.near_plane > 0))
     throw UsageError("--near", "must be greater than 0 for a perspective camera");
@@ -108,8 +112,6 @@ void check_view(const ViewOptions& o) {
     throw UsageError("--far", "must be greater than --near");
   if (o.far_plane && o.orthographic && !std::isfinite(*o.far_plane))
     throw UsageError("--far", "must be finite for an orthographic camera");
-  if (o.orthographic_height && !(*o.orthographic_height > 0))
-    throw UsageError("--orthographic", "the height must be greater than 0");
 }
 
 }  // namespace rastrum::cli

@@ -140,10 +140,11 @@ void check_inputs(const std::vector<std::string>& inputs, std::string_view forma
     if (is_stdin(source)) ++from_stdin;
     if (format.empty() && is_unnamed(source, format))
       throw UsageError(is_stdin(source) ? "standard input" : source,
-                       "the name of a pipe does not say what it holds: say it, as in --format ply");
+                       "the name of a pipe does not tell the format: give it, as in --format ply");
   }
   if (from_stdin > 1)
-    throw UsageError("INPUT", "standard input can be read once, and is asked for twice");
+    throw UsageError("INPUT",
+                     "standard input can be read only once, but two inputs are standard input");
 }
 
 void remember_inputs(const std::vector<std::string>& inputs) {

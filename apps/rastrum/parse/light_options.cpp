@@ -50,7 +50,7 @@ Light light_of(const std::string& kind) {
   } else {
     throw UsageError(kOption,
                      "expected ambient, hemisphere, directional, point, spot, headlight or "
-                     "environment, then what it is, as in point:2,3,4:intensity=9, got '" +
+                     "environment, then its values, as in point:2,3,4:intensity=9, got '" +
                          kind + "'");
   }
   return light;
@@ -168,7 +168,7 @@ void add_file_lights(const Scene& scene, std::vector<Light>& lights) {
   if (scene.lights.empty()) throw UsageError("--lights", "the inputs have no lights of their own");
   lights.insert(lights.end(), scene.lights.begin(), scene.lights.end());
   if (lights.size() > kMaxLights)
-    throw UsageError("--lights", std::to_string(lights.size()) + " lights, at most " +
+    throw UsageError("--lights", std::to_string(lights.size()) + " lights are given, and at most " +
                                      std::to_string(kMaxLights) + " are possible");
 }
 
@@ -179,17 +179,19 @@ struct LightHelp {
   const char *lights, *instead, *tone, *exposure;
 };
 constexpr LightHelp kOfMeshes{
-    "of lambert, phong and material: default: the fixed light of each; headlight: one at the "
-    "viewer; studio: key, fill, back and head light; file: those of glTF files (studio where -o "
-    "alone and no --shader is asked for, docs/light.md; else default)",
-    "instead of the fixed light, or beside --lights: ", "of --shader material: ",
-    "of --shader material: light is doubled so many times (0)"};
+    "lights of the shaders lambert, phong and material. default: each shader's fixed light; "
+    "headlight: one at the viewer; studio: key, fill, back and head light; file: the lights of "
+    "glTF files (without this option: studio where only -o and no --shader is asked for, "
+    "docs/light.md; else default)",
+    "add a light, in place of the fixed one or beside --lights: ", "for --shader material: ",
+    "for --shader material: double the light so many times (default: 0)"};
 constexpr LightHelp kOfGround{
-    "in the sun's place, of ground and meshes: headlight: one at the viewer; studio: key, fill, "
-    "back and head light; default: the sun (default)",
-    "in the sun's place, where x is east, y the height and z south, or beside --lights: ",
-    "of --light and --lights, whose light is linear then, meshes are drawn by material: ",
-    "of --light and --lights: light is doubled so many times (0)"};
+    "lights of ground and meshes in the sun's place. headlight: one at the viewer; studio: key, "
+    "fill, back and head light; default: the sun (without this option: default)",
+    "add a light, in the sun's place or beside --lights; x is east, y the height and z south: ",
+    "for --light and --lights, whose light becomes linear, and whose meshes the shader material "
+    "draws: ",
+    "for --light and --lights: double the light so many times (default: 0)"};
 
 void add_lights(Parser app, FrameOptions& frame, LightChoice& choice, const LightHelp& help) {
   std::vector<Light>& lights = frame.lights;
@@ -213,13 +215,13 @@ void add_lights(Parser app, FrameOptions& frame, LightChoice& choice, const Ligh
                    [&lights, &choice](const std::string& s) {
                      choice.given = true;
                      if (lights.size() >= kMaxLights)
-                       throw UsageError("--light", "there are at most 256");
+                       throw UsageError("--light", "at most 256 lights are possible");
                      lights.push_back(parse_light(s));
                    });
   add(app, "--tone", "NAME",
       std::string(help.tone) +
-          "how light above 1 is shown: none: cut (default), reinhard, aces, neutral (Khronos PBR "
-          "Neutral)",
+          "how light above 1 is shown: none cuts it off, reinhard, aces, neutral (Khronos PBR "
+          "Neutral) (default: none)",
       [&frame](const std::string& s) {
         for (const auto& [word, tone] : kTones)
           if (s == word) {
@@ -234,7 +236,7 @@ void add_lights(Parser app, FrameOptions& frame, LightChoice& choice, const Ligh
       throw UsageError("--exposure", "must lie in -32 to 32, got '" + s + "'");
   });
   app.add_flag("--environment-behind", frame.environment_behind,
-               "what --light environment shows is seen where nothing else is");
+               "show the environment of --light where nothing else is seen");
 }
 
 }  // namespace
@@ -246,17 +248,16 @@ void add_ground_lights(Parser app, FrameOptions& frame, LightChoice& choice) {
 void add_light_options(Parser app, FrameOptions& frame, LightChoice& choice) {
   add_lights(app, frame, choice, kOfMeshes);
   app.add_flag("--shadows", frame.shadows,
-               "of directional lights and spots that --lights and --light say");
+               "draw the shadows of the directional lights and spots of --lights and --light");
   add_number_that(
       app, "--shadow-size", "TEXELS",
-      "most texels across a shadow map, 64 to 8192 (by default the frame's size decides)",
+      "largest width of a shadow map in texels, 64 to 8192 (default: the frame's size decides)",
       frame.shadow_size,
       [](double size) { return size >= 64 && size <= 8192 && size == std::floor(size); },
       "must be a whole number from 64 to 8192");
-  add_number_that(
-      app, "--shadow-distance", "D",
-      "how far from the eye --shadows are drawn (by default as far as the picture sees)",
-      frame.shadow_distance, is_above_zero, "must be greater than 0");
+  add_number_that(app, "--shadow-distance", "D",
+                  "how far from the eye --shadows are drawn (default: as far as the picture sees)",
+                  frame.shadow_distance, is_above_zero, "must be greater than 0");
 }
 
 }  // namespace rastrum::cli

@@ -49,8 +49,8 @@ class Written {
 
  private:
   [[noreturn]] static void refuse(const Output& output, const std::string& other) {
-    throw UsageError(output.option, output.name() + " is also what " + other +
-                                        " is written to; give each its own");
+    throw UsageError(output.option,
+                     output.name() + " is also the file of " + other + "; give each its own file");
   }
   std::map<fs::path, std::string> names_;
   std::map<std::pair<dev_t, ino_t>, std::string> files_;
@@ -127,8 +127,8 @@ void check_outputs(std::span<const Output* const> outputs, bool hash) {
   }
   for (const Output* const output : outputs)
     if (hash && output->to_stdout())
-      throw UsageError("--hash", "is printed to standard output, and so is what " + output->option +
-                                     " asks for: name a file there");
+      throw UsageError("--hash", "prints to standard output, and so does " + output->option +
+                                     "; give that a file's name");
 }
 
 NumberedName::NumberedName(std::string_view option, std::string_view pattern) {
@@ -187,24 +187,24 @@ void check_numbered(std::span<const Output* const> of_pictures,
 
 void add_path_options(Parser app, RunOptions& a, const std::string& fps_help) {
   add(app, "--path", "FILE",
-      "draw a picture for each moment of a camera path (docs/window.md): -o 'frame_%04d.png' or, "
-      "through ffmpeg, -o flight.mp4",
+      "draw a picture for each moment of the camera path in FILE (docs/window.md): -o "
+      "'frame_%04d.png' or, through ffmpeg, -o flight.mp4",
       [&a](const std::string& s) { a.path = s; });
-  add(app, "--fps", "N", fps_help, [&a](const std::string& s) {
-    a.fps = parse_number("--fps", s);
-    if (!(*a.fps > 0 && *a.fps <= 1000)) throw UsageError("--fps", "must lie in 0 to 1000");
-  });
+  add_number_that(
+      app, "--fps", "N", fps_help, a.fps, [](double fps) { return fps > 0 && fps <= 1000; },
+      "must be greater than 0 and at most 1000");
 }
 
 void add_frames_option(Parser app, RunOptions& a) {
-  add_integer(app, "--frames", "N", "render N times; --stats gives median, minimum and maximum (1)",
-              a.frames, 1, 1000000);
+  add_integer(app, "--frames", "N",
+              "draw N times; --stats gives median, minimum and maximum (default: 1)", a.frames, 1,
+              1000000);
 }
 
 void add_hash_option(Parser app, RunOptions& a) {
   app.add_flag("--hash", a.hash,
                "print the digest (SHA-256, docs/conventions.md) of the pixels of each picture that "
-               "is written, or without any of the 8-bit colours");
+               "is written; if none is, of the 8-bit colours");
 }
 
 }  // namespace rastrum::cli

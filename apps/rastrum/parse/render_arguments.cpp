@@ -12,62 +12,66 @@ namespace {
 void add_output_options(Parser app, RenderArguments& a) {
   app = app.under("Outputs");
   add(app, "-o,--output", "FILE",
-      ".png: 8 bit, straight alpha; .exr, .npy: float32, premultiplied; with --path or --turntable "
-      "also .mp4, over black; - is standard output, here and below",
+      "the picture. .png: 8 bit, straight alpha; .exr, .npy: float32, premultiplied; with --path "
+      "or --turntable also .mp4, over black; - is standard output, here and below",
       [&a](const std::string& s) { a.color_file = s; });
   add_choice(app, "--output-format", "NAME",
-             "png, exr, npy: of -o, where its name does not say (png)", a.color_format,
-             {{"png", Format::png}, {"exr", Format::exr}, {"npy", Format::npy}});
-  add_output(app, "--depth", ".npy or .exr: float32, 1 near, 0 far and where nothing is",
-             a.outputs.depth, {Format::npy, Format::exr});
-  add_choice(
-      app, "--depth-unit", "NAME",
-      "of --depth: reversed, or world: the distance along the view axis in the scene's units, inf "
-      "where nothing is (reversed)",
-      a.depth_unit, {{"world", DepthUnit::world}, {"reversed", DepthUnit::reversed}});
-  add_output(app, "--ids", ".npy: int64, triangle in order of submission, -1 where nothing is",
+             "format of -o where its name does not tell it: png, exr, npy (default: png)",
+             a.color_format, {{"png", Format::png}, {"exr", Format::exr}, {"npy", Format::npy}});
+  add_output(
+      app, "--depth",
+      "depth of the nearest surface, .npy or .exr: float32, 1 near, 0 far and where nothing is",
+      a.outputs.depth, {Format::npy, Format::exr});
+  add_choice(app, "--depth-unit", "NAME",
+             "what --depth writes: reversed (1 near, 0 far), or world: the distance along the view "
+             "axis in the scene's units, inf where nothing is (default: reversed)",
+             a.depth_unit, {{"world", DepthUnit::world}, {"reversed", DepthUnit::reversed}});
+  add_output(app, "--ids",
+             "number of the triangle that is seen, in order of submission, .npy: int64, -1 where "
+             "nothing is",
              a.outputs.ids, {Format::npy});
   add_output(app, "--objects",
-             ".npy: int32, which INPUT is seen, from 0 in command order, -1 where nothing is",
+             "number of the INPUT that is seen, from 0 in the command line's order, .npy: int32, "
+             "-1 where nothing is",
              a.outputs.objects, {Format::npy});
   app.add_repeated(
       "--image", "NAME=FILE",
-      "what is seen at each pixel (docs/outputs.md), .npy, or .exr where it is of "
-      "one, three or four floats; may be repeated; the names: " +
+      "another image of the frame (docs/outputs.md), .npy, or .exr if a pixel has one, three or "
+      "four floats; may be repeated. Names: " +
           frame_image_names(),
       [&a](const std::string& s) { a.outputs.images.push_back(parse_frame_image(s)); });
   add_output(app, "--heatmap",
-             ".png: fragments at each pixel, hidden ones too, as colours; legend on stderr",
+             "how many fragments each pixel has, hidden ones too, as colours, .png; stderr gets "
+             "the legend",
              a.outputs.heatmap, {Format::png});
-  add_output(
-      app, "--show-errors",
-      ".png: the picture in grey, and red where filter:K blended in a wrong order, or exact had to "
-      "sort a pixel that its filter could not hold",
-      a.outputs.errors, {Format::png});
-  add_output(app, "--stats", ".json: counts, memory, times, ids of the inputs, cameras", a.stats,
+  add_output(app, "--show-errors",
+             "the picture in grey, .png; a pixel is red where filter:K blended in a wrong order, "
+             "or where exact had to sort more fragments than its filter holds",
+             a.outputs.errors, {Format::png});
+  add_output(app, "--stats", "counts, memory, times, ids of the inputs and cameras, .json", a.stats,
              {Format::json});
-  add_output(app, "--trace", ".json: stages for chrome://tracing or ui.perfetto.dev", a.trace,
-             {Format::json});
+  add_output(app, "--trace", "stages of the frames for chrome://tracing or ui.perfetto.dev, .json",
+             a.trace, {Format::json});
   add_hash_option(app, a);
-  app.add_flag("--quiet", a.quiet, "print errors alone: no warnings, legend, summary or progress");
+  app.add_flag("--quiet", a.quiet, "print only errors: no warnings, legend, summary or progress");
 }
 
 void add_sequence_options(Parser app, RenderArguments& a) {
   app = app.under("Many pictures");
-  add_integer(
-      app, "--turntable", "N",
-      "N pictures of a full turn about the camera's target: -o 'turn_%03d.png' or, through ffmpeg, "
-      "-o turn.mp4",
-      a.turntable, 1, 1000000);
-  add_path_options(app, a, "pictures a second of the path or the film (30)");
+  add_integer(app, "--turntable", "N",
+              "draw N pictures of a full turn around the camera's target: -o 'turn_%03d.png' or, "
+              "through ffmpeg, -o turn.mp4",
+              a.turntable, 1, 1000000);
+  add_path_options(app, a, "pictures a second of the path or the film (default: 30)");
   app = app.under("Motion");
   add_number_that(
       app, "--time", "S",
-      "the moment of an animation of the files, in seconds; what has ended begins again (without: "
-      "as the files stand, and along --path each picture's own time)",
+      "the moment of the files' animation, in seconds; an animation that has ended begins again "
+      "(default: the files as they stand; along --path the time of each picture)",
       a.time_s, [](double seconds) { return seconds >= 0; }, "must not be negative");
-  add_integer(app, "--animation", "N", "which one, as `rastrum info` counts them (0)", a.animation,
-              0, 1000000);
+  add_integer(app, "--animation", "N",
+              "which animation to take, as `rastrum info` counts them (default: 0)", a.animation, 0,
+              1000000);
 }
 
 void add_drawing_options(Parser app, RenderArguments& a) {
@@ -75,22 +79,21 @@ void add_drawing_options(Parser app, RenderArguments& a) {
   add_frames_option(app, a);
   app.add_flag(
       "--prepare", a.prepares,
-      "sort the meshes' triangles into clusters first, which pictures leave out where they are "
-      "not seen: for --frames, --turntable and --path of some ten pictures or more");
+      "sort the meshes' triangles into clusters first, so that each picture can leave out hidden "
+      "ones; it pays for --frames, --turntable and --path of about ten pictures or more");
   add_choice(
       app, "--out-of-core", "NAME",
-      "draw a binary .ply, .stl, .glb or .npy chunk by chunk without reading it into memory, all "
-      "within --memory-limit (docs/large_files.md); auto: one INPUT that takes more than a limit "
-      "of 64M or more; always (2G without a limit), never (auto)",
+      "draw a binary .ply, .stl, .glb or .npy chunk by chunk within --memory-limit, without "
+      "reading it into memory (docs/large_files.md); auto: if a single INPUT takes more than the "
+      "limit and the limit is 64M or more; always: within 2G if no limit is given; never (default: "
+      "auto)",
       a.out_of_core,
       {{"auto", OutOfCore::automatic}, {"always", OutOfCore::always}, {"never", OutOfCore::never}});
-  add(app, "--timeout", "S",
-      "with mpirun: end the job where a rank waits longer than this for the others, and say in "
-      "what (for ever)",
-      [&a](const std::string& s) {
-        a.timeout_s = parse_number("--timeout", s);
-        if (!(*a.timeout_s > 0)) throw UsageError("--timeout", "must be greater than 0");
-      });
+  add_number_that(
+      app, "--timeout", "S",
+      "with mpirun: end the job if a rank waits longer than this for the others, in seconds, and "
+      "say in which phase (default: wait for ever)",
+      a.timeout_s, is_above_zero, "must be greater than 0");
 }
 
 /// All outputs of a picture, asked for or not.
@@ -136,7 +139,7 @@ void settle(RenderArguments& a) {
     o.color = parse_output("-o", *a.color_file,
                            {Format::png, Format::exr, Format::npy, Format::mp4}, a.color_format);
   else if (a.color_format)
-    throw UsageError("--output-format", "is for -o");
+    throw UsageError("--output-format", "needs -o");
   if (o.asked_for().empty() && !a.stats && !a.trace && !a.hash)
     throw UsageError("-o", "say where the picture goes, as in -o picture.png");
   // Numbers beside the colours mean that the picture is compared, not only shown.
@@ -144,22 +147,21 @@ void settle(RenderArguments& a) {
   set_look(a, is_to_be_shown(a) && !asks_for_numbers, a.path.empty(), a.has_colors());
   check_scene_arguments(a);
   check_annotations(a.annotations, a.has_colors());
-  if (a.depth_unit && !o.depth) throw UsageError("--depth-unit", "is for --depth");
+  if (a.depth_unit && !o.depth) throw UsageError("--depth-unit", "needs --depth");
   if (a.animation && !a.time_s && a.path.empty())
-    throw UsageError("--animation", "is for --time and --path");
-  if (!a.is_sequence() && a.fps) throw UsageError("--fps", "is for --path and --turntable");
+    throw UsageError("--animation", "needs --time or --path");
+  if (!a.is_sequence() && a.fps) throw UsageError("--fps", "needs --path or --turntable");
   if (!a.is_sequence() && o.color.is_film())
-    throw UsageError(
-        "-o", "an .mp4 is drawn along a camera path or of a full turn: give --path or --turntable");
+    throw UsageError("-o", "an .mp4 needs several pictures: give --path or --turntable");
   if (a.is_sequence() && a.frames)
-    throw UsageError("--frames", std::string("leaves no room for ")
+    throw UsageError("--frames", std::string("cannot go with ")
                                      .append(a.path.empty() ? "--turntable" : "--path")
                                      .append(": both say how many frames are drawn"));
   if (!a.path.empty() && a.turntable != 0)
-    throw UsageError("--turntable", "leaves no room for --path: both move the camera");
+    throw UsageError("--turntable", "cannot go with --path: both move the camera");
   if (a.turntable != 0 && a.view.file_camera)
     throw UsageError("--turntable",
-                     "the camera of a file has no target to turn about: give --eye and --target");
+                     "the camera of a file has no target to turn around: give --eye and --target");
   if (a.is_sequence()) static_cast<void>(o.numbered(0, 1));  // throws for a wrong %d
   a.view.turns = a.turntable != 0;
 }

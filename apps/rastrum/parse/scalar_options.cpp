@@ -21,7 +21,9 @@ ScalarRange parse_range(const std::string& text) {
   const std::vector<double> ends = parse_numbers("--range", text);
   if (ends.size() != 2)
     throw UsageError("--range", "expected LOW,HIGH as in 0,100, got '" + text + "'");
-  if (ends[0] > ends[1]) throw UsageError("--range", "is upside down: '" + text + "'");
+  if (ends[0] > ends[1])
+    throw UsageError("--range",
+                     "the first number must not be above the second, got '" + text + "'");
   return {ends[0], ends[1]};
 }
 
@@ -81,9 +83,10 @@ void add_scalar_options(Parser app, ScalarOptions& s, NumbersOf of) {
   const Parser listed = app.under("Numbers as colours");
   app = listed;
   add(app, "--scalars", "NAME",
-      is_terrain
-          ? "height: colours by the heights as the file has them; so have the options below"
-          : "colours by numbers of the files (rastrum info lists them), or by x, y, z, distance",
+      is_terrain ? "height: colour the ground by the heights of the file; the options below take "
+                   "numbers of the file, too"
+                 : "colour by these numbers of the files (`rastrum info` lists their names), or by "
+                   "x, y, z or distance",
       [&s](const std::string& v) {
         s.name = v;
         s.name_given = true;
@@ -97,35 +100,42 @@ void add_scalar_options(Parser app, ScalarOptions& s, NumbersOf of) {
   };
   ScalarMapping& m = s.mapping;
   add_one("--cmap", "NAME",
-          "colours from low to high, NAME_r reversed, or #rrggbb,#rrggbb,... (viridis): " +
+          "colours from low to high: #rrggbb,#rrggbb,... or a name, which NAME_r reverses "
+          "(default: viridis). Names: " +
               joined(color_map_names()),
           [&m](ScalarOptions&, const std::string& v) { m.map = parse_map(v); });
-  add_one("--range", "LOW,HIGH", "numbers of the first and last colour (the least and greatest)",
+  add_one("--range", "LOW,HIGH",
+          "numbers that get the first and the last colour (default: the least and the greatest)",
           [&m](ScalarOptions&, const std::string& v) { m.range = parse_range(v); });
-  app.add_flag("--log", m.logarithmic, "even steps of colour are even factors");
-  app.add_flag("--symmetric", m.symmetric, "0 is the middle of the range");
-  add_one("--steps", "N", "so many colours, each of an equal part of the range",
+  app.add_flag("--log", m.logarithmic,
+               "make the scale of colours logarithmic: equal steps of colour are equal factors");
+  app.add_flag("--symmetric", m.symmetric, "put 0 in the middle of the range");
+  add_one("--steps", "N", "take so many colours, each for an equal part of the range",
           [&m](ScalarOptions&, const std::string& v) {
             m.steps = parse_integer("--steps", v, 1, 65536);
           });
-  add_one("--categories", "V,V,...", "a colour for each of these numbers, none for others",
+  add_one("--categories", "V,V,...",
+          "give each of these numbers its own colour; all others get that of --nan-color",
           [&m](ScalarOptions&, const std::string& v) {
             m.categories = parse_numbers("--categories", v);
           });
-  add_one("--below", "COLOUR", "of numbers below the range (its first colour)",
+  add_one("--below", "COLOUR", "colour of numbers below the range (default: its first colour)",
           [&m](ScalarOptions&, const std::string& v) { m.below = parse_color("--below", v); });
-  add_one("--above", "COLOUR", "of numbers above it (its last colour)",
+  add_one("--above", "COLOUR", "colour of numbers above the range (default: its last colour)",
           [&m](ScalarOptions&, const std::string& v) { m.above = parse_color("--above", v); });
-  add_one("--nan-color", "COLOUR", "where there is no number, also in the bar (#808080)",
+  add_one("--nan-color", "COLOUR",
+          "colour where there is no number; the bar shows it, too (default: #808080)",
           [](ScalarOptions& all, const std::string& v) {
             all.mapping.nan = parse_color("--nan-color", v);
             all.nan_given = true;
           });
   if (is_terrain) app = app.under("");  // for meshes alone
-  add_one("--scalar-opacity", "V:A,V:A,...", "opacity at these numbers, linear between them",
+  add_one("--scalar-opacity", "V:A,V:A,...",
+          "opacity at each of these numbers; it is linear between them",
           [&m](ScalarOptions&, const std::string& v) { m.opacity = parse_opacity(v); });
   add_one("--isolines", "N|V,V,...",
-          "lines on meshes: about N of them, or where these numbers are (V, for one alone)",
+          "draw lines of equal numbers on meshes: about N of them, or one for each of these "
+          "numbers (V, for a single one)",
           [](ScalarOptions& all, const std::string& v) {
             if (v.find(',') == std::string::npos)
               all.isoline_count = parse_integer("--isolines", v, 1, 1000);
@@ -133,36 +143,39 @@ void add_scalar_options(Parser app, ScalarOptions& s, NumbersOf of) {
               all.mapping.isolines =
                   parse_numbers("--isolines", v.back() == ',' ? v.substr(0, v.size() - 1) : v);
           });
-  add_one("--isoline-color", "COLOUR", "(black)", [](ScalarOptions& all, const std::string& v) {
-    all.mapping.isoline_color = parse_color("--isoline-color", v);
-    all.of_lines = "--isoline-color";
-  });
-  add_one("--isoline-width", "PX", "(1)", [](ScalarOptions& all, const std::string& v) {
-    all.mapping.isoline_px = static_cast<float>(parse_number("--isoline-width", v));
-    all.of_lines = "--isoline-width";
-  });
+  add_one("--isoline-color", "COLOUR", "colour of the lines of --isolines (default: black)",
+          [](ScalarOptions& all, const std::string& v) {
+            all.mapping.isoline_color = parse_color("--isoline-color", v);
+            all.of_lines = "--isoline-color";
+          });
+  add_one("--isoline-width", "PX", "width of the lines of --isolines in pixels (default: 1)",
+          [](ScalarOptions& all, const std::string& v) {
+            all.mapping.isoline_px = static_cast<float>(parse_number("--isoline-width", v));
+            all.of_lines = "--isoline-width";
+          });
   app = listed;
-  add_one("--bar", "TITLE", "a bar beside the picture that says which colour is which number",
+  add_one("--bar", "TITLE", "draw a bar with this title that says which colour is which number",
           [](ScalarOptions& all, const std::string& v) { all.bar_title = v; });
-  add_one("--bar-unit", "UNIT", "behind the title",
+  add_one("--bar-unit", "UNIT", "unit, written behind the title of --bar",
           [](ScalarOptions& all, const std::string& v) { all.bar_unit = v; });
 }
 
 void check_scalars(const ScalarOptions& s, bool has_colors) {
   if (s.name.empty()) {
     if (s.name_given)
-      throw UsageError("--scalars", "is empty; rastrum info lists a file's numbers");
+      throw UsageError("--scalars",
+                       "the name is empty; `rastrum info` lists the names of a file's numbers");
     const char* const option = s.given != nullptr      ? s.given
                                : s.mapping.logarithmic ? "--log"
                                : s.mapping.symmetric   ? "--symmetric"
                                                        : nullptr;
-    if (option != nullptr) throw UsageError(option, "is of numbers: say which, as in --scalars z");
+    if (option != nullptr) throw UsageError(option, "needs numbers: say which, as in --scalars z");
     return;
   }
-  if (s.bar() && !has_colors) throw UsageError("--bar", "is drawn into a picture: give -o");
-  if (!s.bar() && !s.bar_unit.empty()) throw UsageError("--bar-unit", "is for --bar");
+  if (s.bar() && !has_colors) throw UsageError("--bar", "needs a picture: give -o");
+  if (!s.bar() && !s.bar_unit.empty()) throw UsageError("--bar-unit", "needs --bar");
   if (s.of_lines != nullptr && s.isoline_count == 0 && s.mapping.isolines.empty())
-    throw UsageError(s.of_lines, "is for --isolines");
+    throw UsageError(s.of_lines, "needs --isolines");
   try {
     // Refuses mappings that are wrong for any numbers.
     ScalarMapping m = s.mapping;

@@ -17,7 +17,7 @@ namespace {
 void add_axis(Parser& app, const char* option, const std::vector<family::AxisInfo>& axis,
               std::string& value) {
   const std::vector<std::string> names = axis_names(axis);
-  add(app, option, "NAME", joined(names) + " (auto)", [=, &value](const std::string& s) {
+  add(app, option, "NAME", joined(names) + " (default: auto)", [=, &value](const std::string& s) {
     if (std::ranges::find(names, s) == names.end())
       throw UsageError(option, "expected one of " + joined(names) + ", got '" + s + "'");
     value = s;
@@ -117,17 +117,18 @@ Option add_input_option(Parser& app, SceneArguments& a) {
   add_reading_options(app, a.reading);
   return app
       .add_option("INPUT", a.inputs,
-                  "files (.obj .ply .stl .off .gltf .glb .npy) and builtin:SHAPE[?name=value,...], "
-                  "drawn as one scene in this order; "
+                  "files (.obj .ply .stl .off .gltf .glb .npy) and shapes "
+                  "(builtin:SHAPE[?name=value,...]), drawn as one scene in this order; "
                   "INPUT@x=X,y=Y,z=Z,scale=S,rx=DEG,ry=DEG,rz=DEG,color=#RRGGBB,opacity=A places "
-                  "and paints one; - is standard input")
+                  "and paints one of them; - is standard input")
       ->type_name("");
 }
 
 void add_reading_options(Parser app, InputReading& reading) {
   app = app.under("Inputs");
   const std::string known = joined(io::scene_formats());
-  add(app, "--format", "NAME", known + ": for inputs without an extension, such as -",
+  add(app, "--format", "NAME",
+      known + ": the format of inputs whose name does not tell it, such as -",
       [&reading, known](const std::string& s) {
         const std::vector<std::string_view> names = io::scene_formats();
         if (std::ranges::find(names, s) == names.end())
@@ -135,25 +136,27 @@ void add_reading_options(Parser app, InputReading& reading) {
         reading.format = s;
       });
   add_choice(app, "--allow-outside", "NAME",
-             "whether a file may name others outside of its folder: yes, no (yes)",
+             "whether a file may name other files outside of its folder: yes, no (default: yes)",
              reading.options.allow_outside, {{"yes", true}, {"no", false}});
 }
 
 void add_shading_options(Parser app, SceneArguments& a) {
   add(app, "--shader", "NAME",
-      joined(shader_names()) + "; auto: material where a file has materials, else phong (auto)",
+      joined(shader_names()) +
+          "; auto takes material where a file has materials, else phong (default: auto)",
       [&a](const std::string& s) { a.render.shader = parse_shader(s); });
   add_choice(
       app, "--normals", "NAME",
-      "file: the file's, else crease; crease: smooth but for sharp edges; vertex: area-weighted "
-      "means, smooth everywhere; face (file)",
+      "file: the file's own, or as crease where it has none; crease: smooth except at sharp edges; "
+      "vertex: area-weighted means, smooth everywhere; face: flat faces (default: file)",
       a.normals.kind,
       {{"file", Normals::file},
        {"crease", Normals::crease},
        {"vertex", Normals::vertex},
        {"face", Normals::face}});
   add(app, "--crease", "DEG",
-      "an edge stays sharp where its faces meet at more than this angle; 180: none does (40)",
+      "an edge stays sharp where its faces meet at more than this angle; at 180 no edge does "
+      "(default: 40)",
       [&a](const std::string& s) {
         a.normals.crease_deg = parse_number_that(
             "--crease", s, [](double deg) { return deg >= 0 && deg <= 180; },
@@ -169,19 +172,22 @@ void add_shading_options(Parser app, SceneArguments& a) {
                                      "'");
     });
   };
-  add_size("--point-size", kMaxPointSize, "side of the points of files, px (1)", a.sizes.point);
-  add_size("--line-width", kMaxLineWidth, "width of the lines of files, px (1)", a.sizes.line);
-  add_choice(
-      app, "--cull", "NAME",
-      "none, back, front; counter-clockwise is front; with none, the material shader still leaves "
-      "out the back of single-sided glTF materials (none)",
-      a.render.cull, {{"none", Cull::none}, {"back", Cull::back}, {"front", Cull::front}});
+  add_size("--point-size", kMaxPointSize, "side of the points of files in pixels (default: 1)",
+           a.sizes.point);
+  add_size("--line-width", kMaxLineWidth, "width of the lines of files in pixels (default: 1)",
+           a.sizes.line);
+  add_choice(app, "--cull", "NAME",
+             "which side of surfaces to leave out: none, back, front; a face is seen from the "
+             "front where its corners run counter-clockwise; even with none the material shader "
+             "leaves out the back of single-sided glTF materials (default: none)",
+             a.render.cull, {{"none", Cull::none}, {"back", Cull::back}, {"front", Cull::front}});
   app.add_repeated("--clip-plane", "X,Y,Z,D",
-                   "draw only what lies where X x + Y y + Z z + D >= 0 in the world; up to eight",
+                   "draw only what lies where X x + Y y + Z z + D >= 0 in the world; may be "
+                   "repeated, up to eight times",
                    [&a](const std::string& s) {
                      a.render.clip_planes.push_back(parse_clip_plane("--clip-plane", s));
                      if (a.render.clip_planes.size() > kMaxClipPlanes)
-                       throw UsageError("--clip-plane", "there are at most eight");
+                       throw UsageError("--clip-plane", "at most eight planes are possible");
                    });
 }
 
@@ -190,24 +196,26 @@ void add_picture_options(Parser app, SceneArguments& a) {
   add_size(app, a.render);
   add_shading_options(app, a);
   add_light_options(app, a.render, a.lights);
-  add(app, "--background", "COLOUR", "#rrggbb[aa], #rgb[a] or a name of CSS's (transparent)",
+  add(app, "--background", "COLOUR",
+      "colour behind the scene: #rrggbb[aa], #rgb[a] or a name of CSS (default: transparent)",
       [&a](const std::string& s) { a.render.background = parse_color("--background", s); });
 }
 
 void add_blending_options(Parser app, SceneArguments& a) {
   add_number_that(
       app, "--opacity", "A",
-      "of every surface, 0 to 1: opaque and masked materials get alpha A, what blends alpha * A "
-      "(1)",
+      "opacity of every surface, 0 to 1: opaque and masked materials get alpha A, materials that "
+      "blend get their alpha times A (default: 1)",
       a.render.opacity, [](double opacity) { return opacity >= 0 && opacity <= 1; },
       "must lie in 0 to 1");
   add(app, "--transparency", "NAME",
       transparency_list() +
-          "; filter:K orders by blocks and K fragments a pixel, without repair; none draws what is "
-          "translucent opaque (exact)",
+          "; filter:K sorts by blocks and by K fragments a pixel, and repairs no pixel whose order "
+          "is wrong; none draws translucent surfaces as opaque (default: exact)",
       [&a](const std::string& s) { parse_transparency(s, a.render.transparency); });
   add(app, "--alpha-threshold", "[A]",
-      "leaves out what lies behind pixels that have this alpha; alone: 1 - 1/128 (1: nothing)",
+      "leave out what lies farther back once a pixel has this alpha; without A it is 1 - 1/128 "
+      "(default: 1, which leaves out nothing)",
       [&a](const std::string& s) {
         a.render.transparency.alpha_threshold = parse_alpha_threshold(s);
       })
@@ -218,8 +226,8 @@ void add_transparency_options(Parser app, SceneArguments& a) {
   app = app.under("Transparency and samples");
   add_blending_options(app, a);
   add(app, "--samples", "N",
-      "1, 4, 8 or 16 a pixel, at D3D11's standard positions; --ids and --depth are of the nearest "
-      "one (4 where -o alone is asked for, docs/light.md; else 1)",
+      "samples a pixel: 1, 4, 8 or 16, at D3D11's standard positions; --ids and --depth show the "
+      "nearest sample (default: 4 where only -o is asked for, docs/light.md; else 1)",
       [&a](const std::string& s) {
         a.samples_given = true;
         a.render.samples = choose<int>("--samples", s, {{"1", 1}, {"4", 4}, {"8", 8}, {"16", 16}});
@@ -230,9 +238,10 @@ void add_rasterizer_options(Parser app, SceneArguments& a) {
   add_axis(app, "--rasterizer", family::rasterizer_axis(), a.render.rasterizer);
   add_axis(app, "--visibility", family::visibility_axis(), a.render.visibility);
   add(app, "--memory-limit", "BYTES",
-      "scratch beyond the mesh and the images, with K, M or G; what does not fit at once is drawn "
-      "piece by piece; with --out-of-core mesh and images, too; what a file becomes beside 64 "
-      "times its size (none; 1G for a file)",
+      "most memory beside the mesh and the images, with K, M or G; what does not fit at once is "
+      "drawn piece by piece; with --out-of-core the mesh and the images count, too; a file may "
+      "take 64 times its size in memory, and as much as this on top (default: no limit; 1G on top "
+      "for a file)",
       [&a](const std::string& s) {
         a.render.memory_limit = parse_bytes("--memory-limit", s);
         if (a.render.memory_limit != 0) a.reading.options.memory_limit = a.render.memory_limit;
@@ -247,12 +256,11 @@ void add_machine_options(Parser app, SceneArguments& a) {
 
 void add_look_option(Parser app, SceneArguments& a) {
   app = app.under("Picture");
-  add_choice(
-      app, "--look", "NAME",
-      "studio: --view iso --fov 30 --lights studio --occlusion --samples 4, plain: --view front "
-      "--lights default --samples 1, each unless something else is said (studio where -o alone is "
-      "asked for, docs/light.md)",
-      a.look, {{"studio", LookName::studio}, {"plain", LookName::plain}});
+  add_choice(app, "--look", "NAME",
+             "studio: --view iso --fov 30 --lights studio --occlusion --samples 4; plain: --view "
+             "front --lights default --samples 1; each of these options that you give yourself "
+             "wins (default: studio where only -o is asked for, docs/light.md)",
+             a.look, {{"studio", LookName::studio}, {"plain", LookName::plain}});
 }
 
 bool is_to_be_shown(const SceneArguments& a) {
@@ -289,15 +297,14 @@ std::string shapes_help() {
 void check_scene_arguments(const SceneArguments& a) {
   check_inputs(a.inputs, a.reading.format);
   if (a.render.shadows && a.render.lights.empty() && !a.lights.of_files)
-    throw UsageError("--shadows", "is of --lights and --light, as in --lights studio --shadows");
+    throw UsageError("--shadows", "needs lights, as in --lights studio --shadows");
   if (!a.render.shadows && (a.render.shadow_size != 0 || a.render.shadow_distance != 0))
     throw UsageError(a.render.shadow_size != 0 ? "--shadow-size" : "--shadow-distance",
                      "needs --shadows");
   if (a.render.environment_behind && !has_environment(a.render.lights))
-    throw UsageError("--environment-behind",
-                     "is of --light environment, as in --light environment:sky");
+    throw UsageError("--environment-behind", "needs an environment, as in --light environment:sky");
   if (a.crease_given && (a.normals.kind == Normals::vertex || a.normals.kind == Normals::face))
-    throw UsageError("--crease", "is for --normals file and crease");
+    throw UsageError("--crease", "needs --normals file or --normals crease");
   check_view(a.view);
 }
 

@@ -51,30 +51,34 @@ terrain::Fog parse_fog(const std::string& text) {
 void add_terrain_inputs(Parser app, TerrainSceneArguments& a) {
   app = app.under("Terrain");
   add(app, "--height", "FILE",
-      "heights: .png (8 or 16 bit, grey), .raw .bin .r16 (uint16), .npy, .dem (USGS), .tif .tiff",
+      "the height map: .png (8 or 16 bit, grey), .raw .bin .r16 (uint16), .npy, .dem (USGS), .tif "
+      ".tiff",
       [&a](const std::string& s) { a.input.height = s; });
   add(app, "--color", "FILE",
-      "colours, .png or .jpg of any size, stretched over the map (by height, and shaded slopes)",
+      "the ground's colours, .png or .jpg of any size, stretched over the map (default: colours by "
+      "height, with shaded slopes)",
       [&a](const std::string& s) { a.input.color = s; });
   add(app, "--function", "NAME|EXPR",
       joined(std::views::transform(terrain::named_functions(), &terrain::FunctionInfo::name)) +
-          ", or a formula of x and y (cells) such as '40*sin(x/30)*cos(y/50)'",
+          ", or a formula of x and y (in cells) such as '40*sin(x/30)*cos(y/50)'",
       [&a](const std::string& s) { a.input.function = s; });
-  add(app, "--height-size", "WxH", "cells of a raw height map (square)",
+  add(app, "--height-size", "WxH", "size of a raw height map in cells (default: a square)",
       [&a](const std::string& s) {
         const Size size = parse_size("--height-size", s);
         a.input.raw_size.width = size.width;
         a.input.raw_size.height = size.height;
       });
-  add_choice(app, "--height-order", "NAME", "byte order of raw heights: little, big (little)",
+  add_choice(app, "--height-order", "NAME",
+             "byte order of raw heights: little, big (default: little)",
              a.input.raw_size.big_endian, {{"little", false}, {"big", true}});
-  add_number(
-      app, "--height-scale", "S",
-      "cells that a unit of the file is high (8 bit: 1; .dem, .tif: 1 / cell size; else the relief "
-      "is a twelfth of the map's side; --classic: 1, of 16 bit 1/257)",
-      a.input.height_scale);
+  add_number(app, "--height-scale", "S",
+             "how many cells high a unit of the file is (default: for 8 bit 1; for .dem and .tif 1 "
+             "/ cell size; else the relief becomes a twelfth of the map's side; with --classic 1, "
+             "for 16 bit 1/257)",
+             a.input.height_scale);
   add(app, "--tile", "NAME",
-      "beyond the map's edge: repeat, mirror, clamp, none (repeat; a .dem or .tif: none)",
+      "what lies beyond the map's edge: repeat, mirror, clamp, none (default: repeat; for .dem and "
+      ".tif none)",
       [&a](const std::string& s) {
         a.tile_given = true;
         a.options.tiling = choose("--tile", s, kTilings);
@@ -83,20 +87,27 @@ void add_terrain_inputs(Parser app, TerrainSceneArguments& a) {
 
 void add_terrain_camera(Parser app, TerrainSceneArguments& a) {
   app = app.under("Camera");
-  add(app, "--position", "X,Y", "cells, x east and y south (half the width, 0.78 of the height)",
+  add(app, "--position", "X,Y",
+      "where the camera stands, in cells, x east and y south (default: half the map's width, 0.78 "
+      "of its height)",
       [&a](const std::string& s) {
         const std::vector<double> v = parse_numbers("--position", s, 2, "X,Y");
         a.x = v[0];
         a.y = v[1];
       });
   add_number(app, "--altitude", "H",
-             "cells (a tenth of the relief above the highest; --classic: 78)", a.altitude);
-  add_number(app, "--angle", "DEG", "0 looks north, 90 west (0)", a.angle_deg);
+             "height of the camera in cells (default: a tenth of the relief above the highest "
+             "point; with --classic 78)",
+             a.altitude);
+  add_number(app, "--angle", "DEG", "direction of the view: 0 looks north, 90 west (default: 0)",
+             a.angle_deg);
   add_number(app, "--horizon", "ROW",
-             "pixels from the top; smaller looks down (a quarter; --classic: 100)", a.horizon_px);
-  add_number(app, "--roll", "DEG", "turns the picture counter-clockwise (0)", a.roll_deg);
+             "row of the horizon, in pixels from the top; a smaller one looks down (default: a "
+             "quarter of the picture; with --classic 100)",
+             a.horizon_px);
+  add_number(app, "--roll", "DEG", "turn the picture counter-clockwise (default: 0)", a.roll_deg);
   add_number(app, "--clearance", "H",
-             "lifts the camera to so many cells above the ground (not at all)",
+             "lift the camera to so many cells above the ground (default: do not lift it)",
              a.options.ground_clearance);
 }
 
@@ -104,58 +115,68 @@ void add_terrain_picture(Parser app, TerrainSceneArguments& a) {
   app = app.under("Picture");
   terrain::TerrainOptions& o = a.options;
   add_size(app, o);
-  add_number(app, "--distance", "D", "cells that are seen (800)", o.distance);
-  add(app, "--fov", "DEG", "field of view across (90)",
+  add_number(app, "--distance", "D", "how far the picture sees, in cells (default: 800)",
+             o.distance);
+  add(app, "--fov", "DEG", "field of view across the picture's width (default: 90)",
       [&o](const std::string& s) { o.fov_rad = parse_number("--fov", s) * kDegree; });
-  add_number(app, "--scale", "PX",
-             "rows that a height of 1 takes at distance 1 (as columns in the middle)", o.scale_px);
+  add_number(
+      app, "--scale", "PX",
+      "how many rows a height of 1 takes at distance 1 (default: as many as columns in the middle)",
+      o.scale_px);
   add_number_that(
       app, "--step", "S",
-      "cells from the first sample along the view to the next; smaller is finer near the camera "
-      "(bilinear: as long as a pixel is high at each; else 1)",
+      "cells from the first sample along the view to the next; a smaller step is finer near the "
+      "camera (default: for bilinear each step is as long as a pixel is high there; else 1)",
       o.step, is_above_zero, "must be greater than 0");
-  add(app, "--dz", "G", "each further step is longer by this (with a --step of 1: 0.005)",
+  add(app, "--dz", "G", "each further step is longer by this (default: 0.005 with a --step of 1)",
       [&o](const std::string& s) {
         o.dz = parse_number("--dz", s);
         if (o.step == 0) o.step = 1;
       });
-  add(app, "--filter", "NAME", "none, bilinear, mip (bilinear; --classic: none)",
+  add(app, "--filter", "NAME",
+      "how the map is sampled: none, bilinear, mip (default: bilinear; with --classic none)",
       [&a](const std::string& s) {
         a.filter_given = true;
         a.options.filter = choose("--filter", s, kFilters);
       });
   add_choice(app, "--projection", "NAME",
-             "planar, or cylindrical: nothing is stretched at wide angles, up to 360 (planar)",
+             "planar, or cylindrical, which stretches nothing at wide angles, up to 360 degrees "
+             "(default: planar)",
              o.projection, kProjections);
-  add(app, "--sky", "COLOUR", "(#9090e0, which dims with a sun below 30 degrees)",
+  add(app, "--sky", "COLOUR",
+      "colour of the sky (default: #9090e0, which dims with a sun below 30 degrees)",
       [&a](const std::string& s) {
         a.options.sky = parse_rgb("--sky", s);
         a.sky_dims = false;
       });
-  app.add_flag("--dim-sky", a.dim_sky, "dim the colour of --sky with a low sun, too");
+  app.add_flag("--dim-sky", a.dim_sky, "dim the colour of --sky, too, if the sun is low");
   add(app, "--fog", "DENSITY[,START][,COLOUR]",
-      "per cell, from START cells on, to this colour (none; 0; the sky's)",
+      "fog of this density a cell, from START cells on, of this colour (default: no fog; START 0; "
+      "the sky's colour)",
       [&o](const std::string& s) { o.fog = parse_fog(s); });
   app.add_flag("--classic", o.classic,
-               "the original program bit for bit: 90 degrees, scale 240, 10 above the ground");
+               "draw the original program's picture bit for bit: 90 degrees, scale 240, 10 above "
+               "the ground");
 }
 
 void add_terrain_light(Parser app, TerrainSceneArguments& a) {
   app = app.under("Light");
   add(app, "--sun", "AZIMUTH,ELEVATION",
-      "degrees, clockwise from north and above the horizon (315,35)", [&a](const std::string& s) {
+      "direction of the sun in degrees, clockwise from north and above the horizon (default: "
+      "315,35)",
+      [&a](const std::string& s) {
         const std::vector<double> v = parse_numbers("--sun", s, 2, "AZIMUTH,ELEVATION");
         if (v[1] > 90)
           throw UsageError("--sun", "the elevation must be at most 90, got '" + s + "'");
         a.light.sun = {v[0], v[1]};
       });
-  add_choice(
-      app, "--shadows", "NAME",
-      "none; accumulated: darker by the number of hidden samples (paper 3); sharp: exact; soft: "
-      "with the sun's size (none)",
-      a.light.shadows, kShadows);
+  add_choice(app, "--shadows", "NAME",
+             "shadows on the ground: none; accumulated: darker by the number of hidden samples "
+             "(paper 3); sharp: exact; soft: with the sun's size (default: none)",
+             a.light.shadows, kShadows);
   add_number_that(
-      app, "--sun-radius", "DEG", "of the disc that casts soft shadows (0.2666)",
+      app, "--sun-radius", "DEG",
+      "radius of the sun's disc, which casts soft shadows (default: 0.2666)",
       a.light.sun_radius_deg, [](double deg) { return deg >= 0 && deg <= 45; },
       "must lie in 0 to 45");
 }
@@ -163,7 +184,9 @@ void add_terrain_light(Parser app, TerrainSceneArguments& a) {
 void add_terrain_machine(Parser app, TerrainSceneArguments& a) {
   app = app.under("Machine");
   TerrainLook& o = a.options;
-  add_choice(app, "--method", "NAME", "fast; words: paper 3's scans, the same picture (fast)",
+  add_choice(app, "--method", "NAME",
+             "how the picture is computed: fast, or words: by the scans of paper 3; the picture is "
+             "the same (default: fast)",
              o.added, {{"fast", nullptr}, {"words", &family::terrain_words()}});
   add_device_options(app, o);
 }
@@ -176,7 +199,8 @@ terrain::Tiling suited_tiling(const TerrainInput& input) {
 void settle(TerrainSceneArguments& a) {
   if (!a.options.classic && !a.tile_given) a.options.tiling = suited_tiling(a.input);
   if (!a.options.classic) return;
-  if (a.dim_sky) throw UsageError("--dim-sky", "the sky of the original program has one colour");
+  if (a.dim_sky)
+    throw UsageError("--dim-sky", "the sky of --classic has one colour: leave one of them out");
   if (!a.filter_given) a.options.filter = terrain::MapFilter::none;
   a.input.classic_scale = true;
 }

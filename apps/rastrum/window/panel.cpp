@@ -122,9 +122,8 @@ Area draw_panel(Viewer& viewer, const Controls& controls) {
     draw_keys(viewer.subject().keys());
     draw_keys(Viewer::keys());
     ImGui::TextWrapped(
-        "Rest: what is there; click: the same in the title. Drag: orbit; right: look around; "
-        "middle or Shift: pan; wheel: "
-        "zoom.");
+        "Hold the pointer still: see what is under it; click: see that in the title. Drag: orbit; "
+        "with the right button: look around; with the middle one or Shift: pan. Wheel: zoom.");
     ImGui::TextWrapped("Drop a file on the window to open it.");
   }
   // Below, so that it does not move what is about to be clicked.

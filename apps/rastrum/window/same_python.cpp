@@ -186,7 +186,7 @@ std::string python_lines(const ShownPicture& shown, const std::string& png) {
   const family::Options frame = s.frame(shown.width, shown.height);
   std::string all = "import rastrum as rr\n\n";
   if (const std::string missing = without_words(shown); !missing.empty())
-    all += "# Not said here, for Python has no words for it: " + missing + "\n";
+    all += "# Left out here, since the Python package does not have it: " + missing + "\n";
   std::vector<std::string> files;
   for (const std::string& input : shown.arguments.inputs)
     files.push_back(literal(parse_input(input).source));

@@ -124,9 +124,12 @@ std::string without_words(const ShownTerrain& t) {
   const terrain::TerrainCamera& c = t.pose.camera;
   for (const double rad : {c.angle_rad, c.roll_rad, fov_of(t)})
     if (!exact_degrees(rad))
-      all += "# An angle has no such number of degrees: the next one is said.\n";
+      all +=
+          "# No number of degrees gives one of the angles exactly; the nearest one stands here.\n";
   if (t.input.height && !t.input.height_scale && t.input.classic_scale != t.look.classic)
-    all += "# Heights are as they were read before the classic picture was switched.\n";
+    all +=
+        "# The heights have the scale with which they were read, before the classic picture was "
+        "switched.\n";
   return all;
 }
 
@@ -177,10 +180,11 @@ std::string terrain_python(const ShownTerrain& t, const std::string& png) {
   lacks("--classic", o.classic);
   lacks("--step", o.step != 0 && !o.classic);
   lacks("--dz", o.dz != usual.dz);
-  if (!missing.empty()) all += "# Not said here, for Python has no words for it: " + missing + "\n";
+  if (!missing.empty())
+    all += "# Left out here, since the Python package does not have it: " + missing + "\n";
   if (t.input.height && !t.input.height_scale)
     all +=
-        "# A file that does not say how high its unit is wants height_scale=, as the program "
+        "# A file that does not say how high its unit is needs height_scale=, as the program "
         "prints it.\n";
   Call map("rr.Terrain");
   map(literal(t.input.height ? t.input.height->string() : t.input.function));

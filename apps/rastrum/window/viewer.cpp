@@ -24,7 +24,7 @@ constexpr double kClick_px = 3;        ///< of shaking between press and release
 constexpr KeyHelp kViewerKeys[] = {{"p", "screenshot, with its camera as a path file"},
                                    {"k", "add the camera to a path that render --path draws"},
                                    {"ctrl+c", "copy the command line that draws this picture"},
-                                   {"shift+ctrl+c", "copy the Python that does"},
+                                   {"shift+ctrl+c", "copy the Python code that draws this picture"},
                                    {"tab", "hide or show the panel"},
                                    {"ctrl+q", "quit"}};
 

@@ -168,7 +168,7 @@ class ReplayTable {
     for (std::size_t i = 1; i < kWorkers.size(); ++i)
       speed_.columns.push_back(std::to_string(kWorkers[i]));
     for (const int workers : kLooked)
-      stages_.push_back({"What stops a stage from " + std::to_string(workers) +
+      stages_.push_back({"Why a stage does not scale to " + std::to_string(workers) +
                              " workers, µs; lost: of the frame's time, beyond a share of the work",
                          {"what", "stage", "serial", "loops", "tasks", "work", "largest task",
                           "replayed", "lost, %", "by"},

@@ -95,10 +95,13 @@ int run_transparency_pictures(std::span<const std::string_view> arguments) {
   std::string out = ".", size_name = "336x336";
   float opacity = 0.4F, amplify = 8;
   OptionParser parser("transparency-pictures", "The pictures of docs/transparency_methods.md.");
-  parser.add_option("--out", out, "where they go (.)")->type_name("FOLDER");
-  parser.add_option("--size", size_name, "of each (336x336)")->type_name("WxH");
-  parser.add_option("--opacity", opacity, "of every surface (0.4)")->range(0.01, 0.99);
-  parser.add_option("--amplify", amplify, "differences are shown times this (8)")
+  parser.add_option("--out", out, "write the pictures into FOLDER (default: .)")
+      ->type_name("FOLDER");
+  parser.add_option("--size", size_name, "size of each picture (default: 336x336)")
+      ->type_name("WxH");
+  parser.add_option("--opacity", opacity, "opacity of every surface (default: 0.4)")
+      ->range(0.01, 0.99);
+  parser.add_option("--amplify", amplify, "show differences so many times as large (default: 8)")
       ->range(1.0, 255.0);
   if (const auto status = parser.parse(arguments)) return *status;
   const Size size = parse_size(size_name);

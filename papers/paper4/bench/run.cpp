@@ -19,8 +19,10 @@ int run_transparency(std::span<const std::string_view> arguments) {
   OptionParser parser("transparency", "Translucent surfaces: exact, unsorted, approximate, peers.");
   options.add_device(parser);
   selection.add_to(parser);
-  parser.add_option("--opacity", opacity, "of every surface (0.5)")->range(0.01, 0.99);
-  parser.add_option("--patience", patience_s, "seconds after which peeling is stopped (20)")
+  parser.add_option("--opacity", opacity, "opacity of every surface (default: 0.5)")
+      ->range(0.01, 0.99);
+  parser
+      .add_option("--patience", patience_s, "seconds after which peeling is stopped (default: 20)")
       ->range(0.0, 3600.0);
   if (const auto status = options.read(parser, arguments)) return *status;
   if (options.quick) {

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """pyrender's names and flags over Rastrum: `import rastrum.compat.pyrender as pyrender`.
 
-It draws off screen, and needs no OpenGL, no OSMesa and no display. Differences: a scene without any light has
-Rastrum's own, light becomes display values by the sRGB curve, not a power of 1 / 2.2, point lights throw no shadows,
-there is no Viewer, and pictures are the same bits on every machine.
+It draws off screen, and needs no OpenGL, no OSMesa and no display. Differences: a scene without any light gets
+Rastrum's fixed light; light becomes display values by the sRGB curve, not by a power of 1 / 2.2; point lights throw no
+shadows; there is no Viewer; and pictures have the same bits on every machine.
 """
 
 import numpy as np
@@ -55,7 +55,7 @@ class PerspectiveCamera(Camera):
         aspect = self.aspectRatio
         if aspect is None:
             if width is None or height is None:
-                raise ArgumentError("aspectRatio: is needed where there is no picture")
+                raise ArgumentError("aspectRatio: is needed, because there is no picture to take it from")
             aspect = width / height
         p, t = np.zeros((4, 4)), np.tan(self.yfov / 2)
         p[0, 0], p[1, 1] = 1 / (aspect * t), 1 / t
@@ -100,7 +100,7 @@ class Light:
         return {"color": tuple(display(self.color)), "intensity": self.intensity / np.pi}
 
     def _placed(self, pose):
-        raise UnsupportedError(f"{type(self).__name__}: is of no kind; take DirectionalLight, PointLight or SpotLight")
+        raise UnsupportedError(f"{type(self).__name__}: has no kind; take DirectionalLight, PointLight or SpotLight")
 
 
 class DirectionalLight(Light):
@@ -253,7 +253,7 @@ class Mesh:
                       doc="(2, 3): least and greatest of the positions.")
     extents = property(lambda self: np.diff(self.bounds, axis=0).reshape(-1))
     centroid = property(lambda self: np.mean(self.bounds, axis=0))
-    scale = property(lambda self: np.linalg.norm(self.extents), doc="Of the box's diagonal.")
+    scale = property(lambda self: np.linalg.norm(self.extents), doc="The length of the box's diagonal.")
 
     @staticmethod
     def from_points(points, colors=None, normals=None, is_visible=True, poses=None):
@@ -363,7 +363,7 @@ class Scene:
 
     @property
     def bounds(self):
-        """(2, 3): of all positions, in the world."""
+        """(2, 3): the box of all positions, in the world."""
         corners = []
         for node in self.mesh_nodes:
             pose = self.get_pose(node)
@@ -378,7 +378,7 @@ class Scene:
 
     extents = property(lambda self: np.diff(self.bounds, axis=0).reshape(-1))
     centroid = property(lambda self: np.mean(self.bounds, axis=0))
-    scale = property(lambda self: np.linalg.norm(self.extents), doc="Of the box's diagonal.")
+    scale = property(lambda self: np.linalg.norm(self.extents), doc="The length of the box's diagonal.")
     meshes = property(lambda self: {n.mesh for n in self.mesh_nodes})
     cameras = property(lambda self: {n.camera for n in self.camera_nodes})
     lights = property(lambda self: {n.light for n in self.light_nodes})
@@ -442,7 +442,7 @@ class Scene:
         return pose
 
     def set_pose(self, node, pose):
-        """Within its parent."""
+        """The pose within the node's parent."""
         if node not in self._parents:
             raise ArgumentError("the node is not in the scene")
         node.matrix = np.asarray(pose, float)
@@ -465,7 +465,7 @@ class OffscreenRenderer:
         self._renderer = _Renderer()
 
     def render(self, scene, flags=RenderFlags.NONE, seg_node_map=None):
-        """(color, depth), or depth alone with DEPTH_ONLY. color: (H, W, 3) uint8, with RGBA (H, W, 4), with SEG the colours
+        """Returns (color, depth), or only depth with DEPTH_ONLY. color: (H, W, 3) uint8, with RGBA (H, W, 4), with SEG the colours
         of seg_node_map. depth: (H, W) float32 along the axis, 0 where nothing is."""
         if scene.main_camera_node is None:
             raise ArgumentError("the scene has no camera")
@@ -495,7 +495,8 @@ class OffscreenRenderer:
         background = np.clip(np.append(scene.bg_color, 1.0)[:4] if scene.bg_color.shape == (3,) else scene.bg_color, 0, 1)
         picture = self._renderer.render(_Scene(things), camera, size=size, outputs=outputs,
                                         shader="material" if lit else shader, lights=lights if lit else None,
-                                        shadows=lit and bool(flags & RenderFlags.SHADOWS_ALL), background=background, cull="none" if flags & RenderFlags.SKIP_CULL_FACES else "back")
+                                        shadows=lit and bool(flags & RenderFlags.SHADOWS_ALL), background=background,
+                                        cull="none" if flags & RenderFlags.SKIP_CULL_FACES else "back")
         if flags & RenderFlags.DEPTH_ONLY:
             return picture.depth
         if segmented:

@@ -130,7 +130,7 @@ std::uint8_t SceneEdges::sides(const Place& place) const {
   if (place.instance >= table_of_.size() ||
       place.primitive >= first_ids_[place.instance + 1] - first_ids_[place.instance])
     reject("SceneEdges: primitive ", place.primitive, " of instance ", place.instance,
-           " is out of range, the scene has not got it");
+           " is out of range, the scene does not have it");
   if (scene_.instances[place.instance].mesh() == nullptr) return 0;
   const std::vector<std::uint8_t>& drawn = tables_[table_of_[place.instance]];
   return drawn.empty() ? 7 : drawn[static_cast<std::size_t>(place.primitive)];

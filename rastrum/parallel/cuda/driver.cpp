@@ -25,7 +25,8 @@ std::string why_not(cudaError_t error) {
     case cudaErrorNoDevice:
       return "the NVIDIA driver finds no GPU; look at nvidia-smi and CUDA_VISIBLE_DEVICES";
     case cudaErrorMemoryAllocation:
-      return "the GPU has not even the memory for a context; end what else runs there (nvidia-smi)";
+      return "the GPU does not even have memory for a context; end other programs that run there "
+             "(nvidia-smi)";
     default:
       return std::string("the NVIDIA driver says: ").append(cudaGetErrorString(error));
   }

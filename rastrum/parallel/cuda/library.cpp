@@ -34,8 +34,8 @@ OpenedCudaLibrary open_cuda_library(const char* file) {
     return {nullptr, std::string(file).append(" is no library of Rastrum's device code")};
   const CudaLibrary* const library = table();
   if (std::string_view(library->version) != RASTRUM_CUDA_LIBRARY_VERSION)
-    return {nullptr, text_of("the library of device code, ", file, ", is of Rastrum ",
-                             library->version, ", and this program of ",
+    return {nullptr, text_of("the library of device code, ", file, ", belongs to Rastrum ",
+                             library->version, ", but this program to ",
                              RASTRUM_CUDA_LIBRARY_VERSION, "; install both from one build")};
   return {library, {}};
 }

@@ -12,9 +12,8 @@ namespace rastrum::terrain {
 std::string why_not_on_device(const Terrain& terrain, const TerrainOptions& options) {
   if (terrain.is_map()) return {};
   if (!function_view(terrain))
-    return "this terrain is a function of the caller's or an expression, which the CPU alone can "
-           "call";
-  return options.classic ? "the classic picture of a function is the CPU's" : std::string();
+    return "this terrain is a caller's function or an expression, which only the CPU can call";
+  return options.classic ? "only the CPU draws the classic picture of a function" : std::string();
 }
 
 std::uint64_t device_bytes(const Terrain& terrain, const TerrainOptions& options) {

@@ -250,7 +250,7 @@ TEST_F(CudaChoice, SaysWhatItTook) {
   const FrameStats grouped = stats_of(options(64, 64, Device::cuda, {"grouped", "auto"}));
   EXPECT_EQ(grouped.device, Device::threads);
   EXPECT_EQ(grouped.rasterizer, "grouped");
-  EXPECT_TRUE(holds(grouped.device_why, "it is the CPU's"));
+  EXPECT_TRUE(holds(grouped.device_why, "only the CPU has 'grouped'"));
   RenderOptions o = options(64, 64, Device::cuda, {"binned", "auto"});
   o.tuning.schedule = family::Schedule::persistent;
   EXPECT_TRUE(holds(stats_of(o).device_why, "persistent"));

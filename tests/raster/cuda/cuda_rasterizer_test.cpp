@@ -308,7 +308,7 @@ TEST_F(InPlace, BadIndicesAndTargetsAreRefused) {
   Image<std::uint32_t> overdraw(kWidth, kHeight);
   Targets with_overdraw = good.targets;
   with_overdraw.overdraw = overdraw.view();
-  refuses(good, with_overdraw, "of the targets there are", Errc::unsupported);
+  refuses(good, with_overdraw, "only the targets color8", Errc::unsupported);
   mesh.colors.indices.back() = static_cast<std::uint32_t>(mesh.positions.size());
   const OnDevice bad_color(mesh, kWidth, kHeight);
   refuses(bad_color, bad_color.targets, "colors have an index out of range");
