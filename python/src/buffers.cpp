@@ -19,11 +19,12 @@ struct FreeBuffer {
   std::size_t bytes;
 };
 
-/// Unused buffers, the newest last. Only touched under the GIL, so that a fork finds the list
-/// whole.
+/// Buffers that nobody uses, the newest last. The GIL guards them, so that a fork finds the list
+/// whole; where Python has none, the lock does.
 class Free {
  public:
   void* take(std::size_t bytes) {
+    const nb::ft_lock_guard lock(mutex_);
     for (std::size_t i = all_.size(); i-- > 0;)
       if (all_[i].bytes == bytes) {
         void* const data = all_[i].data;
@@ -35,6 +36,7 @@ class Free {
   }
   void give(FreeBuffer buffer) {
     if (buffer.bytes > kKept) return ::operator delete(buffer.data, kAlign);
+    const nb::ft_lock_guard lock(mutex_);
     all_.push_back(buffer);
     kept_ += buffer.bytes;
     while (kept_ > kKept) {
@@ -45,6 +47,7 @@ class Free {
   }
 
  private:
+  nb::ft_mutex mutex_{};
   std::vector<FreeBuffer> all_{};
   std::size_t kept_ = 0;
 };

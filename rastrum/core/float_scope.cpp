@@ -4,7 +4,7 @@
 
 #if defined(__x86_64__)
 #include <xmmintrin.h>
-#elif !defined(__aarch64__)
+#elif !defined(__aarch64__) && !defined(__wasm__)
 #error "FloatScope: say how this processor's floating point is set"
 #endif
 
@@ -20,6 +20,12 @@ FloatScope::FloatScope() noexcept : callers_control_(_mm_getcsr()), callers_flag
 FloatScope::~FloatScope() {
   _mm_setcsr(static_cast<unsigned>(callers_control_));
 }
+
+#elif defined(__wasm__)
+
+// It has this mode alone, and no flags.
+FloatScope::FloatScope() noexcept : callers_control_(0), callers_flags_(0) {}
+FloatScope::~FloatScope() = default;
 
 #else
 

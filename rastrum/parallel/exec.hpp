@@ -26,13 +26,16 @@ class Serial {
   std::shared_ptr<Arena> memory_;
 };
 
-/// oneTBB in its own task arena. Keep it between frames: starting threads costs more than a small
-/// frame.
+class Scheduler;
+
+/// Several threads (scheduler.hpp). Keep it between frames: starting threads costs more than a
+/// small frame.
 class Threads {
  public:
-  /// `count` threads, the caller's included; 0 for as many as cores. It may exceed the cores, where
-  /// oneTBB by itself would cap it. Memory as in Serial.
+  /// `count` threads, the caller's included; 0 for as many as cores. It may exceed the cores.
+  /// Memory as in Serial.
   explicit Threads(int count = 0, MemoryAccount* account = nullptr);
+  explicit Threads(std::unique_ptr<Scheduler> scheduler, MemoryAccount* account = nullptr);
   ~Threads();
   [[nodiscard]] int concurrency() const;
   [[nodiscard]] const std::shared_ptr<Arena>& memory() const { return memory_; }
@@ -47,7 +50,6 @@ class Threads {
  private:
   template <class Share>
   void loop(std::size_t n, std::size_t grain, const Share& share);
-  struct Scheduler;  // keeps oneTBB's large headers in exec.cpp
   std::unique_ptr<Scheduler> scheduler_;
   std::shared_ptr<Arena> memory_;
 };

@@ -145,7 +145,8 @@ void FragmentBytes::each_run(const Block& block, const F& f) {
 template <class F>
 void FragmentBytes::each_plane(const Block& block, const F& f) {
   each_run(block, [&](FragmentRun& run) {
-    for (Reader planes({run.planes(), run.bytes}); !planes.at_end();) f(take_plane(planes));
+    for (Reader planes({run.planes(), static_cast<std::size_t>(run.bytes)}); !planes.at_end();)
+      f(take_plane(planes));
   });
 }
 
@@ -218,7 +219,7 @@ std::uint64_t FragmentBytes::leave_out(const Hides& hides) {
       words[static_cast<std::size_t>(std::countr_zero(m))] = hides.words[from++];
     each_run(block, [&](FragmentRun& run) {
       std::byte* to = run.planes();
-      for (Reader planes({to, run.bytes}); !planes.at_end();) {
+      for (Reader planes({to, static_cast<std::size_t>(run.bytes)}); !planes.at_end();) {
         const std::size_t n = put_seen_of(take_plane(planes), words.data(), to);
         if (n != 0) to += kPlaneBytes + n * kFragmentBytes;
         block.fragments += n;

@@ -50,7 +50,8 @@ class SharedLayers {
   template <class F>
   void each_run(std::size_t block, const F& f) const {
     for (std::uint64_t at = head(block); at != 0; at = memory_[at])
-      f(Reader({reinterpret_cast<const std::byte*>(&memory_[at + 2]), memory_[at + 1]}));
+      f(Reader({reinterpret_cast<const std::byte*>(&memory_[at + 2]),
+                static_cast<std::size_t>(memory_[at + 1])}));
   }
   /// Stores a block's blended layers; called by the rank that has taken it.
   void put(const SeenBlock& block) const;

@@ -3,21 +3,39 @@
 #include <atomic>
 #include <chrono>
 #include <cstddef>
+#include <memory>
 #include <numeric>
+#include <ostream>
 #include <stdexcept>
 #include <stop_token>
 #include <thread>
 #include <vector>
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <gtest/gtest.h>
 
 #include <rastrum/parallel/exec.hpp>
+#include <rastrum/parallel/scheduler.hpp>
 #include <rastrum/stop.hpp>
 
 #include "tests/support/stop_trigger.hpp"
 
 namespace rastrum::parallel::exec_test {
 namespace {
+
+#if defined(__SANITIZE_THREAD__)
+constexpr bool kThreadSanitizer = true;
+#elif defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+constexpr bool kThreadSanitizer = true;
+#else
+constexpr bool kThreadSanitizer = false;
+#endif
+#else
+constexpr bool kThreadSanitizer = false;
+#endif
 
 template <class Exec>
 void expect_each_index_once(Exec& exec, std::size_t n) {
@@ -26,7 +44,20 @@ void expect_each_index_once(Exec& exec, std::size_t n) {
   EXPECT_EQ(calls, std::vector<int>(n, 1));
 }
 
-class ThreadCounts : public testing::TestWithParam<int> {};
+/// As many threads of oneTBB, or of our own.
+struct Team {
+  int count;
+  std::unique_ptr<Scheduler> (*make)(int count);
+};
+void PrintTo(const Team& team, std::ostream* out) {
+  *out << team.count << (team.make == make_pool_scheduler ? " of the pool" : " of oneTBB");
+}
+
+class ThreadCounts : public testing::TestWithParam<Team> {
+ protected:
+  [[nodiscard]] static int count() { return GetParam().count; }
+  Threads exec{GetParam().make(count())};
+};
 
 TEST(Serial, EachIndexOnce) {
   Serial exec;
@@ -35,8 +66,7 @@ TEST(Serial, EachIndexOnce) {
 }
 
 TEST_P(ThreadCounts, EachIndexOnce) {
-  Threads exec(GetParam());
-  EXPECT_EQ(exec.concurrency(), GetParam());
+  EXPECT_EQ(exec.concurrency(), count());
   for (const std::size_t n : {0U, 1U, 7U, 100000U}) expect_each_index_once(exec, n);
 }
 
@@ -44,14 +74,14 @@ TEST_P(ThreadCounts, EachIndexOnce) {
 // its limits.
 TEST_P(ThreadCounts, AreThatManyThreads) {
   for (int repeat = 0; repeat < 3; ++repeat) {
-    Threads exec(GetParam());
+    Threads again(GetParam().make(count()));
     std::atomic<int> here = 0;
     const auto patience = std::chrono::steady_clock::now() + std::chrono::seconds(100);
-    for_each_index(exec, static_cast<std::size_t>(GetParam()), [&](std::size_t) {
+    for_each_index(again, static_cast<std::size_t>(count()), [&](std::size_t) {
       ++here;
-      while (here < GetParam() && std::chrono::steady_clock::now() < patience)
+      while (here < count() && std::chrono::steady_clock::now() < patience)
         std::this_thread::yield();
-      EXPECT_EQ(here, GetParam());
+      EXPECT_EQ(here, count());
     });
     if (HasFailure()) return;
   }
@@ -60,7 +90,6 @@ TEST_P(ThreadCounts, AreThatManyThreads) {
 // Loops over the same memory, which other threads write each time, as in a frame's stages. Under
 // the thread sanitizer this also tests that a loop is a barrier.
 TEST_P(ThreadCounts, LoopsFollowEachOther) {
-  Threads exec(GetParam());
   constexpr std::size_t n = 10000;
   std::vector<std::size_t> a(n), b(n);
   for (std::size_t frame = 0; frame < 20; ++frame) {
@@ -71,7 +100,6 @@ TEST_P(ThreadCounts, LoopsFollowEachOther) {
 }
 
 TEST_P(ThreadCounts, NestedLoops) {
-  Threads exec(GetParam());
   std::atomic<int> calls = 0;
   for_each_index(exec, 30,
                  [&](std::size_t) { for_each_index(exec, 30, [&](std::size_t) { ++calls; }); });
@@ -79,7 +107,6 @@ TEST_P(ThreadCounts, NestedLoops) {
 }
 
 TEST_P(ThreadCounts, AnErrorReachesTheCaller) {
-  Threads exec(GetParam());
   EXPECT_THROW(for_each_index(exec, 1000,
                               [](std::size_t i) {
                                 if (i == 777) throw std::runtime_error("777");
@@ -89,7 +116,6 @@ TEST_P(ThreadCounts, AnErrorReachesTheCaller) {
 }
 
 TEST_P(ThreadCounts, AStoppedLoopLeavesOutWhatHasNotBegun) {
-  Threads exec(GetParam());
   rastrum::test::StopTrigger trigger(9);
   const std::stop_token token = trigger.token();
   constexpr std::size_t n = 10000;
@@ -98,7 +124,7 @@ TEST_P(ThreadCounts, AStoppedLoopLeavesOutWhatHasNotBegun) {
     expect_each_index_once(exec, n);
     EXPECT_THROW(for_each_index(exec, n, [&](std::size_t) { trigger.call(); }), Stopped);
     // Each other thread may have begun one more.
-    EXPECT_LE(trigger.after(), GetParam() - 1);
+    EXPECT_LE(trigger.after(), count() - 1);
     EXPECT_THROW(for_each_index(exec, 1, [](std::size_t) {}), Stopped);
     {
       const StopScope none(nullptr);
@@ -112,7 +138,6 @@ TEST_P(ThreadCounts, AStoppedLoopLeavesOutWhatHasNotBegun) {
 
 // A worker, if there is one, requests the stop; the caller has the token anyway.
 TEST_P(ThreadCounts, BodiesAndTheirLoopsSeeTheStop) {
-  Threads exec(GetParam());
   std::stop_source source;
   const std::stop_token token = source.get_token();
   const StopScope scope(token);
@@ -121,7 +146,7 @@ TEST_P(ThreadCounts, BodiesAndTheirLoopsSeeTheStop) {
   std::atomic<int> inner = 0;
   EXPECT_THROW(for_each_index(exec, 30,
                               [&](std::size_t) {
-                                if (GetParam() > 1 && std::this_thread::get_id() == caller) {
+                                if (count() > 1 && std::this_thread::get_id() == caller) {
                                   asked.wait(false);
                                 } else {
                                   source.request_stop();
@@ -135,7 +160,68 @@ TEST_P(ThreadCounts, BodiesAndTheirLoopsSeeTheStop) {
   EXPECT_EQ(inner, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Counts, ThreadCounts, testing::Values(1, 2, 8));
+// As a server does whose requests share a renderer's threads.
+TEST_P(ThreadCounts, SeveralCallersAtOnce) {
+  std::atomic<int> wrong = 0;
+  {
+    std::vector<std::jthread> callers;
+    for (int caller = 0; caller < 4; ++caller)
+      callers.emplace_back([&] {
+        for (std::size_t frame = 0; frame < 50; ++frame) {
+          std::vector<std::size_t> squares(1000);
+          for_each_index(exec, squares.size(), [&](std::size_t i) { squares[i] = i * i + frame; });
+          for (std::size_t i = 0; i < squares.size(); ++i) wrong += squares[i] != i * i + frame;
+        }
+      });
+  }
+  EXPECT_EQ(wrong, 0);
+}
+
+TEST_P(ThreadCounts, OneOfManyErrorsReachesTheCaller) {
+  for (int repeat = 0; repeat < 20; ++repeat)
+    EXPECT_THROW(for_each_index(exec, 1000, [](std::size_t) { throw std::runtime_error("each"); }),
+                 std::runtime_error);
+  expect_each_index_once(exec, 1000);
+}
+
+// The caller sleeps longer than threads wait before they sleep, too.
+TEST_P(ThreadCounts, AreWokenAfterAPause) {
+  for (int repeat = 0; repeat < 3; ++repeat) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    expect_each_index_once(exec, 1000);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Pool, ThreadCounts,
+                         testing::Values(Team{1, make_pool_scheduler}, Team{2, make_pool_scheduler},
+                                         Team{8, make_pool_scheduler}));
+#if defined(RASTRUM_TBB)
+INSTANTIATE_TEST_SUITE_P(Tbb, ThreadCounts,
+                         testing::Values(Team{1, make_tbb_scheduler}, Team{2, make_tbb_scheduler},
+                                         Team{8, make_tbb_scheduler}));
+#endif
+
+// Python's multiprocessing forks a process that has drawn. The child has no threads; it draws
+// alone.
+TEST(Pool, WorksAndEndsInAForkedChild) {
+  if (kThreadSanitizer) GTEST_SKIP() << "the sanitizer starts no threads after a fork";
+  auto exec = std::make_unique<Threads>(make_pool_scheduler(4));
+  expect_each_index_once(*exec, 1000);
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    expect_each_index_once(*exec, 1000);
+    exec = std::make_unique<Threads>(make_pool_scheduler(4));  // which has threads again
+    expect_each_index_once(*exec, 1000);
+    exec.reset();
+    _exit(HasFailure() ? 1 : 0);
+  }
+  expect_each_index_once(*exec, 1000);
+  int status = -1;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+}
 
 }  // namespace
 }  // namespace rastrum::parallel::exec_test

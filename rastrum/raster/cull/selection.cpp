@@ -82,8 +82,8 @@ void Selection::begin(const FrameContext& frame, std::uint64_t first, std::uint6
       continue;
     }
     const std::uint64_t slots = slots_of(draw);
-    for (const std::uint64_t v :
-         {reinterpret_cast<std::uintptr_t>(draw.clusters), draw.first_id, draw.primitive_count})
+    for (const std::uint64_t v : {std::uint64_t{reinterpret_cast<std::uintptr_t>(draw.clusters)},
+                                  draw.first_id, std::uint64_t{draw.primitive_count}})
       fingerprint_ = (std::rotl(fingerprint_, 23) ^ v) * 0x9E3779B97F4A7C15U;
     part.first_slot = slots_;
     always_ = always_ || draw.clusters->way.always;

@@ -12,7 +12,7 @@
 namespace rastrum::raster {
 namespace {
 
-constexpr std::uint16_t kNothing = 64 * (1 + kMaxSamples);
+constexpr std::uint16_t kUncovered = 64 * (1 + kMaxSamples);
 }  // namespace
 
 struct SampledColors::Place {
@@ -192,7 +192,7 @@ SampledColors::SampledColors()
     : kept_(std::make_unique<Primitive[]>(kKept)),
       planes_(std::make_unique<Piece[]>(kKept)),
       clipped_(std::make_unique<Clipped[]>(kKeptClipped)) {
-  colors_[kNothing / 64] = {};
+  colors_[kUncovered / 64] = {};
 }
 SampledColors::SampledColors(SampledColors&&) noexcept = default;
 SampledColors::~SampledColors() = default;
@@ -244,7 +244,7 @@ void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, 
         continue;
       }
       const std::uint64_t key = keys.at(x, y, s);
-      at[s] = kNothing;
+      at[s] = kUncovered;
       if (key == 0) continue;
       const std::uint64_t place =
           has_places ? seen_.places[i] >> (4 * s) & 15 : SampledKeys::kUnknownPlace;

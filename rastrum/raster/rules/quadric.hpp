@@ -61,13 +61,15 @@ struct Quadric {
 /// A piece keeps in x[0], y[0] the pixel that the quadric is relative to, in the others two corners
 /// of its box, n.8, and a pointer to the quadric.
 RASTRUM_HD inline void set_quadric(Piece& p, const Quadric* quadric) {
-  const auto halves = std::bit_cast<std::array<float, 2>>(quadric);
+  const auto halves =
+      std::bit_cast<std::array<float, 2>>(std::uint64_t{reinterpret_cast<std::uintptr_t>(quadric)});
   p.z0 = 0;
   p.zx = halves[0];
   p.zy = halves[1];
 }
 RASTRUM_HD inline const Quadric& quadric_of(const Piece& p) {
-  return *std::bit_cast<const Quadric*>(std::array<float, 2>{p.zx, p.zy});
+  const auto address = std::bit_cast<std::uint64_t>(std::array<float, 2>{p.zx, p.zy});
+  return *reinterpret_cast<const Quadric*>(static_cast<std::uintptr_t>(address));
 }
 
 namespace scalar_wide {
