@@ -208,4 +208,5 @@ def as_camera(camera, scene):
                                 "OpenGL's axes use Camera.opengl(projection, view), where view is this, or its inverse if it goes "
                                 "from camera to world; with OpenCV's axes use Camera.opencv(K, R, t)")
         return Camera.opengl(m)
-    raise ArgumentTypeError(f"camera: must be a rastrum.Camera or a (4, 4), not {type(camera).__qualname__}")
+    hint = f"; Camera.fit(what, {camera!r}) takes the name of a view" if isinstance(camera, str) else ""
+    raise ArgumentTypeError(f"camera: must be a rastrum.Camera or a (4, 4), not {type(camera).__qualname__}{hint}")

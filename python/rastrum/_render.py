@@ -388,7 +388,10 @@ def _arrays(outputs, out, number, many, shape, primitives):
     arrays = {}
     for name in [*names, *(n for n in given if n not in names)]:
         if name not in OUTPUTS:
-            raise ArgumentError(f"outputs: there is no {name!r}; take some of {', '.join(OUTPUTS)}")
+            import difflib  # as other modules that few calls need: imports are a script's time
+            near = difflib.get_close_matches(str(name), OUTPUTS, 1, 0.75)
+            raise ArgumentError(f"outputs: there is no {name!r}" + (f", {near[0]!r} perhaps" if near else "") +
+                                f"; take some of {', '.join(OUTPUTS)}")
         dtype, channels = OUTPUTS[name]
         expected = (number,) * many + shape + (channels,) * (channels > 1)
         if name in given:

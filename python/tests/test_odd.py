@@ -264,6 +264,8 @@ K = np.array([[50, 0, 24], [0, 50, 18], [0, 0, 1.0]])
     (lambda: rr.Light.ambient(intensity="bright"), "intensity"), (lambda: rr.Light.ambient(color=(255, 0, 0)), "color.*divide"),
     (lambda: rr.Mesh(TRIANGLE, id="wheel"), "id: must be a whole number"), (lambda: rr.Mesh(TRIANGLE, id=-5), "id"),
     (lambda: rr.Mesh(TRIANGLE, colour="red"), r"Mesh: there is no 'colour', 'colors?' perhaps"),
+    (lambda: rr.render(rr.Mesh(TRIANGLE), outputs="ids"), "outputs: there is no 'ids', 'id' perhaps"),
+    (lambda: rr.render(rr.Mesh(TRIANGLE), "iso"), r"camera: .*not str; Camera.fit\(what, 'iso'\)"),
     (lambda: rr.Points(TRIANGLE, radius=1), "Points: there is no 'radius'"), (lambda: rr.Mesh(TRIANGLE, visible="no"), "visible"),
     (lambda: rr.Mesh(TRIANGLE, color="reed"), "color: 'reed'.*'red'"), (lambda: rr.Mesh(TRIANGLE, opacity=5), "opacity"),
     (lambda: rr.Mesh(TRIANGLE, color=RED), "color.*divide"), (lambda: rr.Mesh(TRIANGLE, winding="cw"), "winding"),
