@@ -5,7 +5,8 @@ add_library(rastrum_flags INTERFACE)
 set(cxx_flags -ffp-contract=off -fno-math-errno
   -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow -Wnon-virtual-dtor)
 # Highway's functions for NEON may use AES, and g++ 12 inlines them only where their callers may, too. It uses none by itself.
-if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64")
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_SYSTEM_PROCESSOR STREQUAL "aarch64"
+   AND NOT CMAKE_CXX_FLAGS MATCHES "-m(arch|cpu)=")
   list(APPEND cxx_flags -march=armv8-a+crypto)
 endif()
 if(RASTRUM_WERROR)

@@ -8,7 +8,6 @@
 #include <condition_variable>
 #include <exception>
 #include <mutex>
-#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -84,8 +83,8 @@ class Team {
   explicit Team(int wanted) {
     try {
       workers_.reserve(static_cast<std::size_t>(wanted));
-      while (size() < wanted) workers_.emplace_back([this] { help(); });
-    } catch (const std::system_error&) {  // use those that have started
+      for (int i = 0; i < wanted; ++i) workers_.emplace_back([this] { help(); });
+    } catch (const std::exception&) {  // use those that have started
     }
   }
   ~Team() {
@@ -98,8 +97,6 @@ class Team {
   }
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
-
-  [[nodiscard]] int size() const { return static_cast<int>(workers_.size()); }
 
   void open(Loop& loop) {
     std::size_t woken = 0;
@@ -163,25 +160,27 @@ class Team {
   std::vector<std::thread> workers_;
 };
 
+/// Starts its threads at the first loop that has work for them: many a pool is only asked how many
+/// threads it has.
 class PoolScheduler final : public Scheduler {
  public:
-  explicit PoolScheduler(int count)
-      : team_(std::make_unique<Team>((count > 0 ? count : cores()) - 1)) {}
+  explicit PoolScheduler(int count) : concurrency_(count > 0 ? count : cores()) {}
   ~PoolScheduler() override {
-    // Nobody is there to be joined, and what they waited for cannot be destroyed.
+    // A copy has nobody to join, and cannot destroy what they waited for.
     if (is_copy()) static_cast<void>(team_.release());
   }
   PoolScheduler(const PoolScheduler&) = delete;
   PoolScheduler& operator=(const PoolScheduler&) = delete;
 
-  [[nodiscard]] int concurrency() const override { return team_->size() + 1; }
+  [[nodiscard]] int concurrency() const override { return concurrency_; }
 
   void run(std::size_t n, std::size_t grain, Body body, void* data) override {
     if (n == 0) return;
     Loop loop{n, grain, (n - 1) / grain + 1, body, data};
-    if (loop.ranges == 1 || team_->size() == 0 || is_copy()) {
+    if (loop.ranges == 1 || concurrency_ == 1 || is_copy()) {
       loop.work();
     } else {
+      std::call_once(start_, [this] { team_ = std::make_unique<Team>(concurrency_ - 1); });
       team_->open(loop);
       loop.work();
       team_->close(loop);
@@ -194,6 +193,8 @@ class PoolScheduler final : public Scheduler {
   [[nodiscard]] bool is_copy() const { return generation_ != generation(); }
 
   const int generation_ = generation();
+  const int concurrency_;
+  std::once_flag start_;
   std::unique_ptr<Team> team_;
 };
 

@@ -17,7 +17,8 @@ class Scheduler {
   Scheduler& operator=(const Scheduler&) = delete;
   virtual ~Scheduler() = default;
 
-  /// Threads that work at once, the caller's included.
+  /// How many threads work at once, the caller's included; fewer if the system refuses to start so
+  /// many.
   [[nodiscard]] virtual int concurrency() const = 0;
   /// Calls body(data, begin, end) for ranges that make up [0, n), of at most `grain` > 0 indices
   /// each; what the bodies wrote is visible to the caller afterwards. A body may call run() itself,
@@ -26,7 +27,7 @@ class Scheduler {
   virtual void run(std::size_t n, std::size_t grain, Body body, void* data) = 0;
 };
 
-/// `count` threads, 0 for as many as the process may run on; fewer where the system refuses.
+/// `count` threads, 0 for as many as the process may run on.
 [[nodiscard]] std::unique_ptr<Scheduler> make_pool_scheduler(int count);
 [[nodiscard]] std::unique_ptr<Scheduler> make_tbb_scheduler(int count);  ///< with RASTRUM_TBB
 

@@ -1,27 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/parallel/scratch.hpp>
 
+#include <array>
 #include <atomic>
+#include <functional>
 #include <thread>
 #include <utility>
 
 namespace rastrum::parallel {
 
-/// A list that only grows at its head. A thread finds its slot by walking it, which is short: one
-/// node for each thread that ever asked.
+/// Lists that only grow at their heads. A thread's list is chosen by its id, and has one node for
+/// each such thread that ever asked.
 struct ThreadSlots::Impl {
   struct Node {
     std::thread::id thread;
     void* slot = nullptr;
     Node* next = nullptr;
   };
-  std::atomic<Node*> head = nullptr;
+  std::array<std::atomic<Node*>, 64> heads{};
+
+  std::atomic<Node*>& head_of(std::thread::id thread) {
+    return heads[std::hash<std::thread::id>{}(thread) % heads.size()];
+  }
 
   Impl() = default;
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   ~Impl() {
-    for (Node* node = head; node != nullptr;) delete std::exchange(node, node->next);
+    for (Node* node : heads)
+      while (node != nullptr) delete std::exchange(node, node->next);
   }
 };
 
@@ -32,12 +39,13 @@ ThreadSlots::~ThreadSlots() = default;
 
 void*& ThreadSlots::local() {
   const std::thread::id caller = std::this_thread::get_id();
-  Impl::Node* node = impl_->head.load(std::memory_order_acquire);
+  std::atomic<Impl::Node*>& head = impl_->head_of(caller);
+  Impl::Node* node = head.load(std::memory_order_acquire);
   while (node != nullptr && node->thread != caller) node = node->next;
   if (node == nullptr) {
-    node = new Impl::Node{caller, nullptr, impl_->head.load(std::memory_order_relaxed)};
-    while (!impl_->head.compare_exchange_weak(node->next, node, std::memory_order_release,
-                                              std::memory_order_relaxed)) {
+    node = new Impl::Node{caller, nullptr, head.load(std::memory_order_relaxed)};
+    while (!head.compare_exchange_weak(node->next, node, std::memory_order_release,
+                                       std::memory_order_relaxed)) {
     }
   }
   return node->slot;
@@ -45,8 +53,9 @@ void*& ThreadSlots::local() {
 
 void ThreadSlots::for_each(void (*f)(void* slot, void* data), void* data) {
   if (impl_ == nullptr) return;  // moved from
-  for (Impl::Node* node = impl_->head; node != nullptr; node = node->next)
-    if (node->slot != nullptr) f(node->slot, data);
+  for (Impl::Node* node : impl_->heads)
+    for (; node != nullptr; node = node->next)
+      if (node->slot != nullptr) f(node->slot, data);
 }
 
 }  // namespace rastrum::parallel

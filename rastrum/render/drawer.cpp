@@ -103,7 +103,7 @@ class Drawer final : public raster::FrameDrawer {
     if (raster::wants_surface(request.targets) || !request.targets.linear.empty())
       return "the device has only the targets color8, color, depth, ids and keys";
     if (request.part) return "only the CPU draws a part of a frame";
-    if (request.sink != nullptr && has_layers) return "only the CPU hands layers on to other ranks";
+    if (request.sink != nullptr && has_layers) return "only the CPU hands layers on";
     if (request.has_quadrics()) return "only the CPU draws spheres, cylinders, tubes and discs";
     if (!request.device.why_not.empty()) return request.device.why_not;
     return device_.device->why_not(request);

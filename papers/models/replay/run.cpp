@@ -262,13 +262,14 @@ int run_replay(std::span<const std::string_view> arguments) {
   const LoopCosts costs = measure_costs(options.quick ? 5 : 50);
   Document document = options.document("replay", "Frames on more cores than there are");
   char text[400];
-  std::snprintf(text, sizeof text,
-                "oneTBB's own, measured here with two threads: a loop %.0f ns, a task %.0f, taken "
-                "by another worker %.0f, seen to have ended %.0f, the next index %.0f; workers "
-                "sleep after %.0f µs and wake in %.0f µs. Assumed: a look into an empty queue "
-                "%.0f ns.",
-                costs.loop, costs.task, costs.take, costs.join, costs.claim, costs.linger * 1e-3,
-                costs.wake * 1e-3, costs.look);
+  std::snprintf(
+      text, sizeof text,
+      "The scheduler's own, measured here with two threads: a loop %.0f ns, a task %.0f, taken "
+      "by another worker %.0f, seen to have ended %.0f, the next index %.0f; workers "
+      "sleep after %.0f µs and wake in %.0f µs. Assumed: a look into an empty queue "
+      "%.0f ns.",
+      costs.loop, costs.task, costs.take, costs.join, costs.claim, costs.linger * 1e-3,
+      costs.wake * 1e-3, costs.look);
   document.notes.emplace_back(text);
   document.notes.push_back(
       "`phong`, " + std::to_string(options.size(1920)) + " × " +
