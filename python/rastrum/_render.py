@@ -284,7 +284,7 @@ class Renderer:
         annotate: what is drawn over the colours, by name, or {name: options}: "occlusion" (radius, in world units,
         strength), "edl" (strength), "silhouettes", "edges" (angle, in degrees: only edges whose faces meet at
         more, such as creases and borders; width, px), "axes", "bounds", "bar" (for scalars; title, unit, nan: True shows the
-        colour of missing numbers), "title", "captions" (a list), "text_scale". With camera=None a margin is left for "bounds".
+        colour of missing numbers), "title", "captions" (a list), "text_scale". With camera=None there is room for "bounds" and "bar".
         out: {name: array}, filled in place, (H, W, ...) or with a leading N. progress: a function that is called with (done,
         total) after each frame, or True to show a count on a terminal.
         Raises rastrum.Error of the natural class; KeyboardInterrupt in a frame leaves the arrays partly filled.
