@@ -124,7 +124,7 @@ def test_types_of_equal_numbers_give_equal_bits_where_these_are_exact(sheet):
 
 
 def test_an_orbit_of_no_camera_is_refused(sheet):
-    with pytest.raises(rr.ArgumentError, match="at least one"):
+    with pytest.raises(rr.ArgumentError, match="at least 1, not 0"):
         rr.orbit(sheet, 0)
 
 

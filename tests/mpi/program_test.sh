@@ -99,8 +99,8 @@ printf '%80s\377\377\377\377' '' > many.stl
 printf 'glTF\002\000\000\000\377\377\377\377\377\377\377\377JSON' > long.glb
 says 3 'rank 2: cut.ply: ' a.ply a.ply cut.ply -o x.png
 says 3 'rank 0: many.stl: the header says 4294967295 triangles' many.stl a.ply b.ply -o x.png
-says 3 'rank 1: long.glb: is not a sound GLB' a.ply long.glb a.ply -o x.png
-says 2 'rank 0: --turntable: not with several ranks' a.ply b.ply --turntable 4 -o x%d.png
+says 3 'rank 1: long.glb: is not a valid GLB' a.ply long.glb a.ply -o x.png
+says 2 'rank 0: --turntable: cannot be used with several ranks' a.ply b.ply --turntable 4 -o x%d.png
 says 2 "there are no scalars called 'cold'" a.ply b.ply --scalars cold -o x.png
 says 2 'have no camera' a.ply b.ply --camera 0 -o x.png
 says 3 'have no lights of their own' a.ply b.ply --lights file -o x.png
