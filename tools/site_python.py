@@ -2,12 +2,14 @@
 """The pages of the Python interface, from the package's sources and stubs. Nothing is imported or built."""
 import ast
 import re
+import textwrap
 
 import griffe
 
 # Parameters at the start of a sentence, such as "near, far: nothing is nearer".
 BEGINS = re.compile(r"(?:^|(?<=[.:]\s)|(?<=\n))(\w+(?:, \w+)*): (?=\S)")
 ENDS = re.compile(r"(?<=\.)\s(?=(?:Returns|Raises) )")
+CODE = re.compile(r"(?:^ {4}.*\n)+", re.MULTILINE)
 # The keywords that **look takes.
 LOOK = {"color", "material", "transform", "visible", "id", "winding", "clip_planes", "scalars", "cmap", "clim"}
 PLUGINS = {
@@ -29,11 +31,12 @@ def pages(folder):
 
 
 def source(module):
-    """Returns (docstring with its indentation, names in __all__), which stubs do not have."""
+    """Returns (docstring as Markdown, names in __all__), which stubs do not have. Indented lines are Python."""
     tree = ast.parse(module.filepath.with_suffix(".py").read_text(encoding="utf-8"))
     public = [ast.literal_eval(node.value) for node in tree.body
               if isinstance(node, ast.Assign) and getattr(node.targets[0], "id", "") == "__all__"]
-    return ast.get_docstring(tree, clean=False), [name for names in public for name in names]
+    about = CODE.sub(lambda code: f"```python\n{textwrap.dedent(code.group())}```\n", ast.get_docstring(tree, clean=False))
+    return about, [name for names in public for name in names]
 
 
 def page(module, name):
