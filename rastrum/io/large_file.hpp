@@ -167,6 +167,7 @@ class LargeFile {
   virtual void read(std::uint64_t first, std::size_t count, std::size_t most_bytes,
                     FileChunk& chunk) const = 0;
   void check_length() const { mapped_.check(); }
+  /// Gives back the pages that a chunk has mapped.
   void drop(const FileChunk& chunk) const { mapped_.drop(chunk.mapped_offset, chunk.mapped_bytes); }
 
   /// A box around triangles [first, first + count) of one part, maybe too large; none before
@@ -213,6 +214,7 @@ class LargeFile {
   /// Calls f with pieces of a run's positions. Thread-safe.
   virtual void read_run(std::size_t run,
                         const std::function<void(std::span<const Vec3d>)>& f) const = 0;
+  /// Keeps the boxes of all runs, as read_positions has found them.
   virtual void keep_boxes(std::vector<FileBox> boxes) const = 0;
 
   /// Calls work(i) for [0, n) on threads, so many at once that their places, which rise, fit into a

@@ -86,6 +86,7 @@ class Reading {
   /// Error{not_found | io}, also if it is no regular file, and Error{unsupported} if it lies
   /// outside without permission.
   [[nodiscard]] std::span<const std::byte> open(const std::filesystem::path& file);
+  /// Throws Error{io} if a file that was opened has become shorter.
   void check() const;
 
   Budget budget;

@@ -23,6 +23,7 @@ class StoredPng {
   StoredPng(StoredPng&&) = delete;  // parts point to its own bytes
 
   [[nodiscard]] std::span<const Bytes> parts() const { return parts_; }
+  /// Whether the picture was inflated and its sums were right.
   [[nodiscard]] bool is_checked() const { return parts_.size() > 1; }
 
  private:

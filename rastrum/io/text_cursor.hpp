@@ -84,6 +84,7 @@ class TextCursor {
     skip_blanks();
     return at_ == end_ || *at_ == '\n';
   }
+  /// The characters up to the next space; empty at the end.
   std::string_view token() {
     skip_space();
     const char* first = at_;

@@ -8,6 +8,7 @@
 
 namespace rastrum::overlay {
 
+/// Throws Error{invalid_argument} if the views differ in size or have rows that overlap.
 void check(const Canvas& canvas);
 
 /// Lengths in px, from the size of letters.

@@ -154,6 +154,7 @@ class MaskedChunk {
       : expansion_(&expansion), in_(&in), index_(index) {}
 
   [[nodiscard]] RASTRUM_HD std::size_t index() const { return index_; }
+  /// The number of the first result that it holds.
   [[nodiscard]] RASTRUM_HD std::size_t begin() const { return expansion_->chunk_begin(index_); }
   [[nodiscard]] RASTRUM_HD std::size_t end() const { return expansion_->chunk_end(index_); }
   [[nodiscard]] RASTRUM_HD std::size_t size() const { return end() - begin(); }

@@ -104,6 +104,7 @@ inline void put_mask(Bytes& to, BlockMask b) {
   put(to, b.block);
 }
 
+/// Writes a mask and the words of its pixels, taken from the block's 64.
 inline void put_words(Bytes& to, BlockMask b, const std::uint64_t* words) {
   put_mask(to, b);
   const std::size_t at = to.size();

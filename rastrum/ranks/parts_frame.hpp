@@ -171,6 +171,7 @@ class PartsFrame {
   void finish_picture();
   [[nodiscard]] Image<std::uint64_t> keys_that_hide(raster::Rect band, std::size_t first) const;
 
+  /// The first id in a pass over own parts that begins with part `first`.
   [[nodiscard]] std::uint64_t first_id_of(std::size_t first) const {
     return frame_.shader == Shader::id ? list_->parts()[places_[first]].first_id : 0;
   }

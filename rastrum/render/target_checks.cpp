@@ -38,7 +38,7 @@ std::vector<NamedRows> rows_of(const Targets& targets) {
   return all;
 }
 
-/// Calls f(bytes, name).
+/// Calls f(bytes, name) for each array that a geometry reads.
 template <class F>
 void each_array(GeometryRef geometry, const F& f) {
   if (const auto* const m = geometry.get_if<MeshView>()) {

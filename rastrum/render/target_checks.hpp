@@ -49,6 +49,7 @@ void check_annotated(const Targets& targets);
 /// Replaces infinite distances in `targets` by the caller's FrameOptions::no_distance.
 void set_no_distance(const Targets& targets, float no_distance);
 
+/// Throws Error{invalid_argument} if the picture cannot be drawn over (Pass::over).
 void check_over(const Targets& targets, const Pass& pass, const FrameOptions& frame);
 
 }  // namespace rastrum

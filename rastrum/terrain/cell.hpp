@@ -16,6 +16,7 @@ namespace rastrum::terrain {
   return tiled(static_cast<std::int64_t>(held), size, tiling);
 }
 
+/// The texel under a point along one axis. A cell has several, or a part of one.
 [[nodiscard]] RASTRUM_HD inline int texel_at(double at, int cells, int texels, Tiling tiling) {
   const std::int64_t cell = cell_at(at, cells, tiling);
   if (texels == cells) return static_cast<int>(cell);

@@ -44,6 +44,7 @@ struct FunctionLight {
   float ambient = 0.45F;
   ToSun to_sun{};
 
+  /// The share of light that a slope reflects, by the heights kSlopeStep to each side.
   [[nodiscard]] RASTRUM_HD float slope(float west, float east, float north, float south) const {
     if (!hill_shading) return 1;
     return to_sun.shade((east - west) / static_cast<float>(2 * kSlopeStep),

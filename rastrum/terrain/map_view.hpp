@@ -87,6 +87,7 @@ struct MapView {
   [[nodiscard]] RASTRUM_HD Rgba8 color_at(float x, float y, int level) const;
   /// The index of the cell in its level; not for MapFilter::bilinear.
   [[nodiscard]] RASTRUM_HD std::int32_t cell_at(float x, float y, int level) const;
+  /// The last level that exists, from `level` on down.
   [[nodiscard]] RASTRUM_HD int height_level(int level) const {
     const int last = static_cast<int>(levels.heights.size()) - 1;
     return level < last ? level : last;

@@ -102,6 +102,7 @@ struct Sweep {
   std::vector<int> reach;          ///< in blocks, for each kReachBands bands
   std::vector<SweepColumn> column;
 
+  /// The first step at least `ahead` columns from where the ray begins.
   [[nodiscard]] std::size_t step_at(int ahead) const {
     const auto last = static_cast<int>(first_step.size()) - 1;
     return first_step[static_cast<std::size_t>(ahead < 0 ? 0 : ahead < last ? ahead : last)];

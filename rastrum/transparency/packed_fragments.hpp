@@ -94,6 +94,7 @@ class PackedFragments {
   /// Above an `opaque_at` of 0 the fragments must be sorted, and hidden layers need not be shaded.
   void shade(const raster::BinContext& context, const raster::Shading& shading, float opaque_at);
   [[nodiscard]] bool any(int bx, int by) const;
+  /// Raises the keys of a block to those of the nearest fragments.
   void raise(int bx, int by, std::uint64_t* keys) const;
   /// Blends a block's shaded layers, in the order of `blend`, over `behind`, which may be null.
   void blend(int bx, int by, LayerBlend& blend, const raster::BlockColors* behind,

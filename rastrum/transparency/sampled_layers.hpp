@@ -19,6 +19,7 @@ class SampledLayers {
   explicit SampledLayers(MemoryAccount& memory)
       : keys_(memory), numbers_(memory), places_(memory), sort_keys_(memory) {}
 
+  /// Begins a block. Its fragments may take `bytes`.
   void begin(Isa isa, std::uint64_t bytes) {
     kernel_ = &packed_kernels(isa);
     most_bytes_ = bytes;

@@ -10,6 +10,7 @@
 
 namespace rastrum::overlay {
 
+/// Throws Error{invalid_argument} for a width out of range.
 void check_edge_width(double width_px);
 
 class TriangleSides {

@@ -78,6 +78,7 @@ void load_each(const float* from, const std::int32_t* places, int count, float* 
 [[nodiscard]] OcclusionKernel occlusion_kernel(Isa isa) noexcept;
 [[nodiscard]] BlurKernel blur_kernel(Isa isa) noexcept;
 
+/// Throws Error{invalid_argument} for options out of range.
 [[nodiscard]] OcclusionFrame occlusion_frame(const Surface& surface, const Camera& camera,
                                              const AmbientOcclusion& options);
 

@@ -22,6 +22,7 @@ namespace rastrum::raster {
 class VertexSource {
  public:
   virtual ~VertexSource() = default;
+  /// Projects vertices [begin, end) into out[0 … end − begin).
   virtual void project(std::size_t begin, std::size_t end, Viewport viewport, Isa isa,
                        ProjectedVertex* out) const noexcept = 0;
   /// Homogeneous, for the clipper; NaN if the vertex is not finite.

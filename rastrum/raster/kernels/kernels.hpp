@@ -229,6 +229,7 @@ struct SampledKeys {
   /// High bits of `low` that all ids below kPlacedIds share.
   static constexpr std::uint64_t kLargeLow = kIdMask & ~(kIdMask >> kPlaceBits);
 
+  /// The keys of the first four samples of pixel (x, y).
   [[nodiscard]] std::uint64_t* at(int x, int y) const {
     return keys + static_cast<std::size_t>(y - y0) * kRow + static_cast<std::size_t>(x - x0) * 4;
   }

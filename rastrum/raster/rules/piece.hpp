@@ -73,6 +73,7 @@ RASTRUM_HD inline bool is_quadric(const Piece& p) {
 RASTRUM_HD inline bool is_deferred(const Piece& p) {
   return (p.flags & kDeferred) != 0;
 }
+/// Whether x and y are three places on the screen whose box holds the piece.
 RASTRUM_HD inline bool has_corners(const Piece& p) {
   return (p.flags & (kLine | kPoint)) == 0;
 }

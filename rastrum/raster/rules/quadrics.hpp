@@ -21,6 +21,7 @@ enum class QuadricKind : std::uint8_t {
   disc,       ///< about p0; p1 is its unit normal
 };
 
+/// Whether p1 and r1 belong to a second end.
 constexpr bool has_two_ends(QuadricKind kind) {
   return kind != QuadricKind::sphere && kind != QuadricKind::disc;
 }

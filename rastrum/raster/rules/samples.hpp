@@ -55,6 +55,7 @@ RASTRUM_HD inline Piece moved(Piece p, SampleOffset by) {
 constexpr bool is_raised_at_once(const Piece& p) {
   return (p.flags & (kAllSamples | kMayDrop)) == kAllSamples;
 }
+/// The piece for sample `number`, which lies at `at`. `p` is for all samples (kAllSamples).
 inline Piece piece_at(const Piece& p, int number, SampleOffset at) {
   Piece own = moved(p, at);
   own.flags = (p.flags & ~kAllSamples) | static_cast<std::uint32_t>(number) << kSampleShift;

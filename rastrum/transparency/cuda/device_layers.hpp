@@ -25,6 +25,7 @@ struct DeviceLayerTuning {
   /// it is sorted.
   [[nodiscard]] std::uint64_t most_records() const { return share(16); }
   [[nodiscard]] std::uint64_t most_fragments() const { return share(24); }
+  /// The same with at most `low` and `high` records, the densities that teams are cut for.
   [[nodiscard]] DeviceLayerTuning within_teams(std::size_t low, std::size_t high) const {
     DeviceLayerTuning t = *this;
     t.low_records = std::min(low_records, low);
