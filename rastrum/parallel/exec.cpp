@@ -93,7 +93,7 @@ template <class Share>
 void Threads::loop(std::size_t n, std::size_t grain, const Share& share) {
   const StopToken* const stop = StopScope::current();
   const auto stopped = [stop] { return stop != nullptr && stop->stop_requested(); };
-  const auto range = [&](std::size_t begin, std::size_t end) {
+  auto range = [&](std::size_t begin, std::size_t end) {
     const FloatScope floats;  // a worker inherits the mode of the thread that started it
     if (stopped()) return;
     const StopScope scope(stop);
@@ -104,7 +104,7 @@ void Threads::loop(std::size_t n, std::size_t grain, const Share& share) {
       [](void* data, std::size_t begin, std::size_t end) {
         (*static_cast<decltype(&range)>(data))(begin, end);
       },
-      const_cast<void*>(static_cast<const void*>(&range)));
+      &range);
   // Some ranges may have been skipped, so nobody may see the results.
   if (stopped()) throw Stopped{};
 }
