@@ -2,10 +2,10 @@
 // Shared by the sources of the module.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <optional>
-#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -18,6 +18,7 @@
 #include <rastrum/prepared_mesh.hpp>
 #include <rastrum/scalars.hpp>
 #include <rastrum/scene.hpp>
+#include <rastrum/stop.hpp>
 
 namespace rastrum::python {
 
@@ -61,6 +62,14 @@ template <ViewedValue T>
 /// Row-major (4, 4) or (3, 4) of float64.
 [[nodiscard]] Mat4d matrix(const Array& array, const char* name);
 
+/// What a signal's handler tells frames. The kernel may run the handler on any thread, and so after
+/// the frame has ended: these are static and never freed.
+struct SignalFlag {
+  std::atomic<bool> came{false};
+  [[nodiscard]] bool stop_requested() const { return came.load(std::memory_order_relaxed); }
+};
+static_assert(std::atomic<bool>::is_always_lock_free);  // a handler may write it
+
 /// Ctrl-C asks the frame to stop, while Python's own handler would only note it. Works on the
 /// process's main thread only. Python's handler runs as well, so that PyErr_CheckSignals() can act
 /// on it afterwards.
@@ -70,7 +79,7 @@ class StopOnInterrupt {
   ~StopOnInterrupt();
   StopOnInterrupt(const StopOnInterrupt&) = delete;
   StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
-  [[nodiscard]] std::stop_token token() const;
+  [[nodiscard]] StopToken token() const;
 
  private:
   bool installed_ = false;

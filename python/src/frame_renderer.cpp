@@ -54,10 +54,12 @@ void FrameRenderer::draw_all(std::size_t pictures, std::int64_t pixels, const Dr
   after();
 }
 
-std::vector<FrameStats> FrameRenderer::render(
-    const SceneView& scene, const std::vector<Camera>& cameras, const FrameOptions& o,
-    const std::vector<Wanted>& outputs, const Annotations* annotations, const std::stop_token& stop,
-    const std::function<void()>& after) {
+std::vector<FrameStats> FrameRenderer::render(const SceneView& scene,
+                                              const std::vector<Camera>& cameras,
+                                              const FrameOptions& o,
+                                              const std::vector<Wanted>& outputs,
+                                              const Annotations* annotations, StopToken stop,
+                                              const std::function<void()>& after) {
   std::vector<FrameStats> stats(cameras.size());
   std::optional<SceneEdges> edges;
   if (annotations != nullptr && annotations->edges)
@@ -75,7 +77,7 @@ std::vector<FrameStats> FrameRenderer::render(
 }
 
 void FrameRenderer::rasterize(std::span<const ClipTriangles> what, ImageView<Vec4> first,
-                              const std::stop_token& stop) {
+                              StopToken stop) {
   const std::int64_t pixels = std::int64_t{first.width} * first.height;
   const auto draw = [&](Renderer& by, Scratch& scratch, std::size_t i) {
     ImageView<Vec4> into = first;

@@ -7,7 +7,6 @@
 #include <mutex>
 #include <optional>
 #include <span>
-#include <stop_token>
 #include <vector>
 
 #include <rastrum/render.hpp>
@@ -26,7 +25,7 @@ class FrameRenderer {
   /// drawn side by side.
   std::vector<FrameStats> render(const SceneView& scene, const std::vector<Camera>& cameras,
                                  const FrameOptions& o, const std::vector<Wanted>& outputs,
-                                 const Annotations* annotations, const std::stop_token& stop,
+                                 const Annotations* annotations, StopToken stop,
                                  const std::function<void()>& after);
   std::optional<Pick> pick(const SceneView& scene, const Camera& camera, const FrameOptions& o,
                            int x, int y) {
@@ -36,8 +35,7 @@ class FrameRenderer {
   [[nodiscard]] Renderer& alone() { return renderer_; }
   [[nodiscard]] Annotator& annotator() { return scratch_.annotator; }
   /// A picture for each of `what`, one behind the other.
-  void rasterize(std::span<const ClipTriangles> what, ImageView<Vec4> first,
-                 const std::stop_token& stop);
+  void rasterize(std::span<const ClipTriangles> what, ImageView<Vec4> first, StopToken stop);
 
  private:
   using Draw = std::function<void(Renderer& by, Scratch& scratch, std::size_t i)>;

@@ -142,7 +142,7 @@ nb::list render(FrameRenderer& renderer, const ArrayScene& scene,
     progress(cameras.size() == 1 ? 1 : done, cameras.size());
   };
   std::vector<FrameStats> stats;
-  interruptible([&](const std::stop_token& stop) {
+  interruptible([&](StopToken stop) {
     done = 0;
     stats = renderer.render(shown.view, cameras, o, all, annotations, stop, after);
   });
@@ -199,7 +199,7 @@ void rasterize(FrameRenderer& renderer, const std::vector<Array>& positions, con
                 "out: must be (" + std::to_string(all.size()) + ", H, W, 4) of float32");
   const ImageView<Vec4> first{static_cast<Vec4*>(out.data()), static_cast<int>(out.shape(2)),
                               static_cast<int>(out.shape(1))};
-  interruptible([&](const std::stop_token& stop) { renderer.rasterize(all, first, stop); });
+  interruptible([&](StopToken stop) { renderer.rasterize(all, first, stop); });
 }
 
 void write_png(const std::string& file, const Array& pixels, int threads) {

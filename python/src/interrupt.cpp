@@ -11,11 +11,11 @@ namespace rastrum::python {
 namespace {
 
 struct sigaction previous;
-// Frames poll their token and register nothing with it, so request_stop() is an atomic write.
-std::stop_source* volatile source = nullptr;
+bool in_force = false;  // of the main thread alone
+SignalFlag in_frame;
 
 void on_interrupt(int number, siginfo_t* info, void* context) {
-  if (source != nullptr) source->request_stop();
+  in_frame.came = true;
   if ((previous.sa_flags & SA_SIGINFO) != 0)
     previous.sa_sigaction(number, info, context);
   else if (previous.sa_handler != SIG_DFL && previous.sa_handler != SIG_IGN)
@@ -25,28 +25,27 @@ void on_interrupt(int number, siginfo_t* info, void* context) {
 }  // namespace
 
 StopOnInterrupt::StopOnInterrupt() {
-  if (gettid() != getpid() || source != nullptr) return;
+  if (gettid() != getpid() || in_force) return;
   struct sigaction now;
   sigaction(SIGINT, nullptr, &previous);
   if ((previous.sa_flags & SA_SIGINFO) == 0 &&
       (previous.sa_handler == SIG_DFL || previous.sa_handler == SIG_IGN))
     return;
-  source = new std::stop_source;
+  in_frame.came = false;
   now = previous;
   now.sa_sigaction = on_interrupt;
   now.sa_flags |= SA_SIGINFO;
-  installed_ = sigaction(SIGINT, &now, nullptr) == 0;
+  in_force = installed_ = sigaction(SIGINT, &now, nullptr) == 0;
 }
 
 StopOnInterrupt::~StopOnInterrupt() {
-  if (source == nullptr || !installed_) return;
+  if (!installed_) return;
   sigaction(SIGINT, &previous, nullptr);
-  delete source;
-  source = nullptr;
+  in_force = false;
 }
 
-std::stop_token StopOnInterrupt::token() const {
-  return installed_ ? source->get_token() : std::stop_token{};
+StopToken StopOnInterrupt::token() const {
+  return installed_ ? StopToken(in_frame) : StopToken{};
 }
 
 }  // namespace rastrum::python

@@ -123,57 +123,46 @@ void PythonRanks::exchange(std::span<const std::span<const std::byte>> to,
 namespace {
 
 struct sigaction before;
-volatile std::sig_atomic_t came = 0;
-// Nothing is registered with it, so a stop request in the handler is an atomic write.
-std::stop_source* volatile asked = nullptr;
+bool deferring = false;  // of the main thread alone
+SignalFlag deferred;
 
 void on_deferred_interrupt(int) {
-  came = 1;
-  if (asked != nullptr) asked->request_stop();
+  deferred.came = true;
 }
 
 }  // namespace
 
 void DeferredInterrupt::enter() {
-  if (gettid() != getpid() || asked != nullptr) return;
+  if (gettid() != getpid() || deferring) return;
   sigaction(SIGINT, nullptr, &before);
   if ((before.sa_flags & SA_SIGINFO) == 0 &&
       (before.sa_handler == SIG_DFL || before.sa_handler == SIG_IGN))
     return;
-  came = 0;
-  asked = &stop_;
+  deferred.came = false;
   struct sigaction now {};
   now.sa_handler = on_deferred_interrupt;
   sigemptyset(&now.sa_mask);
   now.sa_flags = SA_RESTART;
-  installed_ = sigaction(SIGINT, &now, nullptr) == 0;
-  if (!installed_) asked = nullptr;
+  deferring = installed_ = sigaction(SIGINT, &now, nullptr) == 0;
 }
 
 void DeferredInterrupt::exit() {
   if (!installed_) return;
   sigaction(SIGINT, &before, nullptr);
-  asked = nullptr;
-  installed_ = false;
-  if (came != 0) PyErr_SetInterrupt();
+  deferring = installed_ = false;
+  if (deferred.came.exchange(false)) PyErr_SetInterrupt();
 }
 
 void DeferredInterrupt::raise() {
   if (!installed_) return;
-  const bool is_there = came != 0;
-  if (is_there) {
-    // The next frame has its own stop. No signal may come in between.
-    sigset_t interrupt, others;
-    sigemptyset(&interrupt);
-    sigaddset(&interrupt, SIGINT);
-    pthread_sigmask(SIG_BLOCK, &interrupt, &others);
-    came = 0;
-    stop_ = std::stop_source{};
-    pthread_sigmask(SIG_SETMASK, &others, nullptr);
-    PyErr_SetInterrupt();
-  }
+  // What comes after this stops the next frame.
+  if (deferred.came.exchange(false)) PyErr_SetInterrupt();
   // Also handles signals that came just before raise() began.
   if (PyErr_CheckSignals() != 0) throw nb::python_error();
+}
+
+StopToken DeferredInterrupt::token() const {
+  return installed_ ? StopToken(deferred) : StopToken{};
 }
 
 namespace {
@@ -211,7 +200,7 @@ nb::object render_parts(FrameRenderer& renderer, const nb::object& of, const Arr
   RanksStats stats;
   try {
     const nb::gil_scoped_release unlock;
-    const std::stop_token stop = interrupt.token();
+    const StopToken stop = interrupt.token();
     stats = annotations == nullptr
                 ? rastrum::render_parts(communicator, renderer.alone(), shown.view, ranks.parts,
                                         camera, o, targets, ranks.options, stop)

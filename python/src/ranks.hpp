@@ -4,10 +4,10 @@
 
 #include <cstdint>
 #include <span>
-#include <stop_token>
 #include <string_view>
 
 #include <rastrum/ranks.hpp>
+#include <rastrum/stop.hpp>
 
 #include "bindings.hpp"
 
@@ -42,10 +42,9 @@ class DeferredInterrupt {
   void exit();
   /// If Ctrl-C came, calls the earlier handler and throws what it raises.
   void raise();
-  [[nodiscard]] std::stop_token token() const { return stop_.get_token(); }
+  [[nodiscard]] StopToken token() const;
 
  private:
-  std::stop_source stop_;
   bool installed_ = false;
 };
 

@@ -2,7 +2,6 @@
 #include "rasterize.hpp"
 
 #include <string>
-#include <utility>
 
 #include <rastrum/error.hpp>
 #include <rastrum/program.hpp>
@@ -18,7 +17,7 @@ struct Nothing {
 }  // namespace
 
 void ClipRasterizer::draw(Renderer& by, const ClipTriangles& what, ImageView<Vec4> into,
-                          std::stop_token stop) {
+                          StopToken stop) {
   // Rastrum's weights are those of the second and the third corner.
   constexpr std::size_t kCornerOf[3] = {2, 0, 1};
   corners_.resize(what.count * 3);
@@ -55,7 +54,7 @@ void ClipRasterizer::draw(Renderer& by, const ClipTriangles& what, ImageView<Vec
   targets.ids = {ids_.data(), into.width, into.height};
   targets.depth = {depth_.data(), into.width, into.height};
   targets.barycentrics = {weights_.data(), into.width, into.height};
-  by.draw({&draw, 1}, frame, targets, {}, std::move(stop));
+  by.draw({&draw, 1}, frame, targets, {}, stop);
 
   for (std::size_t i = 0; i < pixels; ++i) {
     // Fragments beyond the far plane are drawn at a depth of 0, behind all else.

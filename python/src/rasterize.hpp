@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <stop_token>
 #include <vector>
 
 #include <rastrum/array.hpp>
@@ -26,7 +25,7 @@ class ClipRasterizer {
   /// Fills (u, v, z/w, number of the triangle + 1), with the weights of the first and the second
   /// corner; zeros where nothing is. Row 0 is at y = −w. Throws Error{invalid_argument} for an
   /// index without a position.
-  void draw(Renderer& by, const ClipTriangles& what, ImageView<Vec4> into, std::stop_token stop);
+  void draw(Renderer& by, const ClipTriangles& what, ImageView<Vec4> into, StopToken stop);
 
  private:
   std::vector<std::uint32_t> corners_;
