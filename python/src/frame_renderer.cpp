@@ -21,14 +21,23 @@ void FrameRenderer::draw_all(std::size_t pictures, std::int64_t pixels, const Dr
   const std::size_t threads = options_.threads > 0 ? static_cast<std::size_t>(options_.threads)
                                                    : std::thread::hardware_concurrency();
   const std::size_t workers = std::min(threads, pictures);
-  const std::scoped_lock lock(mutex_);
+  // `after` may run a caller's function, which may draw with this renderer: the lock is not held.
   if (workers < 2 || pixels > kSmall || options_.device != Device::threads) {
     for (std::size_t i = 0; i < pictures; ++i) {
-      draw(renderer_, scratch_, i);
+      {
+        const std::scoped_lock lock(mutex_);
+        draw(renderer_, scratch_, i);
+      }
       after();
     }
     return;
   }
+  draw_side_by_side(pictures, workers, draw);
+  after();
+}
+
+void FrameRenderer::draw_side_by_side(std::size_t pictures, std::size_t workers, const Draw& draw) {
+  const std::scoped_lock lock(mutex_);
   while (side_.size() < workers) {
     RendererOptions one = options_;
     one.threads = 1;
@@ -51,7 +60,6 @@ void FrameRenderer::draw_all(std::size_t pictures, std::int64_t pixels, const Dr
       });
   }
   if (failure) std::rethrow_exception(failure);
-  after();
 }
 
 std::vector<FrameStats> FrameRenderer::render(const SceneView& scene,

@@ -42,6 +42,7 @@ class FrameRenderer {
   /// Small pictures side by side, a thread each; others one after the other by all threads.
   void draw_all(std::size_t pictures, std::int64_t pixels, const Draw& draw,
                 const std::function<void()>& after);
+  void draw_side_by_side(std::size_t pictures, std::size_t workers, const Draw& draw);
 
   struct Side {
     explicit Side(const RendererOptions& options) : renderer(options), scratch(options) {}
