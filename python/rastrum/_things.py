@@ -362,11 +362,10 @@ class Mesh(_Thing):
         picture). Scenes that were made of the mesh before draw it as it was. threads: 0: all.
         """
         positions, indices, kind, offsets = self._faces
-        self._faces = (*(None if a is None else np.array(a, order="C") for a in (positions, indices)), kind,
-                       None if offsets is None else np.array(offsets, order="C"))
-        geometry = _r.mesh(*self._faces, *self._attributes)
-        geometry.prepare(int(threads))
-        self._geometry = geometry
+        faces = (*(None if a is None else np.array(a, order="C") for a in (positions, indices)), kind,
+                 None if offsets is None else np.array(offsets, order="C"))
+        self._geometry = _r.mesh(*faces, *self._attributes).prepared(int(threads))
+        self._faces = faces
         return self
 
 

@@ -29,12 +29,13 @@ using Array = nb::ndarray<nb::ro, nb::device::cpu>;
 /// A writable one.
 using Output = nb::ndarray<nb::device::cpu>;
 
-/// An instance's geometry, and the arrays that it views.
+/// An instance's geometry, and the arrays that it views. It never changes, so that any number of
+/// threads may draw it.
 struct ArrayGeometry {
   std::shared_ptr<const GeometryView> view{};  ///< frames share it
   std::vector<Array> kept{};
   bool has_colors = false;
-  std::optional<PreparedMesh> prepared{};  ///< of a mesh, which the view then shows
+  std::shared_ptr<const PreparedMesh> prepared{};  ///< of a mesh, which the view then shows
 };
 
 /// The enum value at the place of `name` in `names`. Throws Error{invalid_argument} that begins

@@ -159,13 +159,16 @@ void bind_geometries(nb::module_& m) {
   nb::class_<ArrayGeometry>(m, "Geometry", "A geometry over arrays, which it keeps alive.")
       .def_prop_ro("primitives", [](const ArrayGeometry& g) { return primitive_count(*g.view); })
       .def(
-          "prepare",
-          [](ArrayGeometry& g, int threads) {
+          "prepared",
+          [](const ArrayGeometry& g, int threads) {
+            ArrayGeometry made = g;
             const nb::gil_scoped_release release;
-            g.prepared.emplace(std::get<MeshView>(*g.view), threads);
-            g.view = std::make_shared<const GeometryView>(g.prepared->view());
+            made.prepared =
+                std::make_shared<const PreparedMesh>(std::get<MeshView>(*g.view), threads);
+            made.view = std::make_shared<const GeometryView>(made.prepared->view());
+            return made;
           },
-          arg("threads"));
+          arg("threads"), "This mesh, ready for many frames, as another geometry.");
   m.def("mesh", mesh, arg("positions"), arg("faces").none(), arg("kind"), arg("offsets").none(),
         arg("normals").none(), arg("normals_per"), arg("texcoords").none(), arg("texcoords_per"),
         arg("colors").none(), arg("colors_per"), arg("scalars").none(), arg("scalars_per"));
