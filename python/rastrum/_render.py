@@ -296,14 +296,13 @@ class Renderer:
             progress = _bar if sys.stderr.isatty() else None
         if progress is not None and not callable(progress):
             raise ArgumentTypeError(f"progress: {progress!r} cannot be called")
-        renderer = self._renderer()
-        stats = renderer.render(scene._made, made, frame,
-                                {name: a if many else a[np.newaxis] for name, a in arrays.items()}, notes, progress)
+        stats = self._renderer().render(scene._made, made, frame,
+                                        {name: a if many else a[np.newaxis] for name, a in arrays.items()}, notes, progress)
 
         def picker(camera):
             def pick(x, y):
                 scene._read_again()
-                found = renderer.pick(scene._made, camera, frame, x, y)
+                found = self._renderer().pick(scene._made, camera, frame, x, y)  # a forked child has another one
                 return None if found is None else Hit(**found)
             return pick
         files = scene._read_from
@@ -419,9 +418,10 @@ atexit.register(_default.clear)
 @raises_errors
 def _kept(threads, device, memory_limit, isa):
     key = threads, device, memory_limit, isa
-    if key not in _default:
-        _default[key] = Renderer(threads=threads, device=device, memory_limit=memory_limit, isa=isa)
-    return _default[key]
+    found = _default.get(key)
+    if found is None:  # of threads that come here at once all take the first one's
+        found = _default.setdefault(key, Renderer(threads=threads, device=device, memory_limit=memory_limit, isa=isa))
+    return found
 
 
 @names_arguments
