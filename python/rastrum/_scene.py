@@ -8,6 +8,7 @@ import numpy as np
 from . import _rastrum as _r
 from . import _others, _readers, _surface
 from ._errors import ArgumentError, ArgumentTypeError, NotFoundError, raises_errors, warn
+from ._locks import lock_in
 from ._things import ColorMapping, Mesh, _Thing
 
 
@@ -31,7 +32,8 @@ class Scene:
         self.files, self.things = [], []
         self._read_from = ()  # absolute, because the process may change its folder
         self._made = _r.Scene()
-        # By id(): (material, its number in the scene, the changes that the scene has), (texture, its number).
+        self._locks = {}  # of _read_again
+        # By id(): (material, C++'s of it, the changes that this has), in the order of their numbers; (texture, its number).
         self._materials, self._textures = {}, {}
         self._material_of = []  # for each thing
         mappings, others = {}, []
@@ -64,28 +66,34 @@ class Scene:
                 self._made.spread_isolines(number, mapping.isoline_count)
 
     def _read_again(self):
-        """Reads the looks of the things as they are now."""
-        for thing in self.things:
-            for name in thing._in_place:
-                thing._read(name, getattr(thing, name))
-        if any(thing.material is not there for thing, there in zip(self.things, self._material_of)):
-            self._made.drop_materials()
-            self._materials.clear()
-            for i, thing in enumerate(self.things):
-                self._made.set_material_of(i, None if thing.material is None else self._number_of(thing.material))
-                if (thing.material is not self._material_of[i] and thing.material is not None and not thing._has_uv and
-                        any(t is not None for t in thing.material.textures)):
-                    warn(f"material: its textures are not drawn on a {type(thing).__name__} without uv")
-            self._material_of = [thing.material for thing in self.things]
-        for key, (material, number, changes) in self._materials.items():
-            if material.changes != changes:
-                self._made.set_material(number, material._made([-1 if t is None else self._texture(t) for t in material.textures]))
-                self._materials[key] = material, number, material.changes
+        """Reads the looks of the things as they are now. Threads that draw the scene take turns here."""
+        with lock_in(self._locks):
+            for thing in self.things:
+                thing._read_in_place()
+            self._read_materials()
 
-    def _number_of(self, material):
-        if id(material) not in self._materials:
-            self._materials[id(material)] = material, len(self._materials), None
-        return self._materials[id(material)][1]
+    def _read_materials(self):
+        wanted = [thing.material for thing in self.things]
+        if (all(now is before for now, before in zip(wanted, self._material_of)) and
+                all(material.changes is changes for material, _, changes in self._materials.values())):
+            return
+        made = {}
+        for material in wanted:
+            if material is None or id(material) in made:
+                continue
+            changes = material.changes  # before the fields: a later change is for the next frame
+            known = self._materials.get(id(material))
+            if known is None or known[2] is not changes:
+                known = material, material._made([-1 if t is None else self._texture(t) for t in material.textures]), changes
+            made[id(material)] = known
+        for thing, now, before in zip(self.things, wanted, self._material_of):
+            if now is not before and now is not None and not thing._has_uv and any(t is not None for t in now.textures):
+                warn(f"material: its textures are not drawn on a {type(thing).__name__} without uv")
+        numbers = {key: number for number, key in enumerate(made)}
+        # At once, so that no other thread's frame has the materials of before and the things of now.
+        self._made.set_materials([material for _, material, _ in made.values()],
+                                 [None if material is None else numbers[id(material)] for material in wanted])
+        self._materials, self._material_of = made, wanted
 
     def _texture(self, pixels):
         if id(pixels) not in self._textures:

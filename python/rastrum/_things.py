@@ -11,6 +11,7 @@ from . import _rastrum as _r
 from ._arrays import _numbers, colors as _colors_of, floats, integers, linear, number, placement, scalars as _scalars, whole
 from ._arrays import color as _color
 from ._errors import ArgumentError, ArgumentTypeError, NotFoundError, raises_errors, warn
+from ._locks import lock_in
 
 
 def _one_of(*names):
@@ -68,7 +69,7 @@ class Material:
                  alpha_cutoff=0.5, double_sided=True, unlit=False, opacity=1.0, base_color_texture=None,
                  metallic_roughness_texture=None, normal_texture=None, occlusion_texture=None,
                  emissive_texture=None):
-        self.changes = 0  # tells scenes whether they have the latest
+        self.changes = object()  # another one after each change: tells scenes whether they have the latest
         self.base_color, self.metallic, self.roughness = base_color, metallic, roughness
         self.emissive, self.alpha_mode, self.alpha_cutoff = emissive, alpha_mode, alpha_cutoff
         self.double_sided, self.unlit, self.opacity = double_sided, unlit, opacity
@@ -82,10 +83,10 @@ class Material:
 
     @raises_errors
     def __setattr__(self, name, value):
-        if name in _OF_MATERIAL:
-            value = _OF_MATERIAL[name](value, name)
-            object.__setattr__(self, "changes", self.changes + 1)
-        object.__setattr__(self, name, value)
+        is_field = name in _OF_MATERIAL
+        object.__setattr__(self, name, _OF_MATERIAL[name](value, name) if is_field else value)
+        if is_field:  # after the value, or a scene of another thread would take the one before for the latest
+            object.__setattr__(self, "changes", object())
 
     def _made(self, textures):
         """The material of C++. `textures`: the numbers of its textures in the scene, -1 for none."""
@@ -194,6 +195,8 @@ _LOOK = {"color": _look_color, "opacity": _part, "material": _look_material,
 _PLAIN = {"color": None, "opacity": 1.0, "material": None, "transform": None, "visible": True, "id": None,
           "winding": "counter_clockwise", "clip_planes": ()}
 _FIXED = (type(None), str, bool, int, float, np.generic)
+#: Of _LOOK's fields of all things: an assignment and a frame's reading in place are one after the other.
+_locks = {}
 
 
 class _Thing:
@@ -243,22 +246,29 @@ class _Thing:
     def __setattr__(self, name, value):
         if name in _LOOK or name in ("scalars", "mapping"):
             self._take(name, value)
-        object.__setattr__(self, name, value)
+        else:
+            object.__setattr__(self, name, value)
 
     @raises_errors
     def _take(self, name, value):
         if name not in _LOOK:
             raise ArgumentError(f"{name}: cannot be assigned; change its numbers in place, or make another thing")
-        made = self._read(name, value)
+        made = _LOOK[name](value, name)
         # Values that may change in place are read again before a frame; C++ reads a transform's own memory.
         fixed = isinstance(value, _FIXED) or isinstance(value, tuple) and all(isinstance(v, _FIXED) for v in value)
-        (self._in_place.discard if fixed or made is value else self._in_place.add)(name)
+        with lock_in(_locks):
+            if name != "material":  # each scene has its own number for it
+                setattr(self._look, name, made)
+            (self._in_place.discard if fixed or made is value else self._in_place.add)(name)
+            object.__setattr__(self, name, value)
 
-    def _read(self, name, value):
-        made = _LOOK[name](value, name)
-        if name != "material":  # each scene has its own number for it
-            setattr(self._look, name, made)
-        return made
+    def _read_in_place(self):
+        """Reads the values again that may have changed in place."""
+        if not self._in_place:
+            return
+        with lock_in(_locks):
+            for name in self._in_place:
+                setattr(self._look, name, _LOOK[name](getattr(self, name), name))
 
     @property
     def primitives(self):

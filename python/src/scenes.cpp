@@ -2,6 +2,7 @@
 #include "scenes.hpp"
 
 #include <array>
+#include <atomic>
 #include <cstring>
 #include <string_view>
 #include <tuple>
@@ -101,32 +102,39 @@ void ArrayScene::add_file(const std::string& file, std::optional<double> crease_
                           std::optional<std::uint64_t> memory_limit, bool allow_outside) {
   io::ReadOptions options{.allow_outside = allow_outside};
   if (memory_limit) options.memory_limit = *memory_limit;
-  Scene read = file.starts_with(kBuiltin) ? shapes::scene_from_spec(file.substr(kBuiltin.size()))
-                                          : io::read_scene(file, options);
-  if (crease_deg)
-    for (Mesh& mesh : read.meshes)
-      if (mesh.normals.empty())
-        mesh.normals =
-            crease_normals(mesh.view().positions, mesh.indices, static_cast<float>(*crease_deg));
+  Scene read;
+  {
+    const nb::gil_scoped_release unlock;
+    read = file.starts_with(kBuiltin) ? shapes::scene_from_spec(file.substr(kBuiltin.size()))
+                                      : io::read_scene(file, options);
+    if (crease_deg)
+      for (Mesh& mesh : read.meshes)
+        if (mesh.normals.empty())
+          mesh.normals =
+              crease_normals(mesh.view().positions, mesh.indices, static_cast<float>(*crease_deg));
+  }
+  const nb::ft_lock_guard lock(mutex_);
   const std::size_t first = files_.instances.size(), count = read.instances.size();
   files_.append(std::move(read));
   order_.push_back(OfFile{first, count});
   primitives_.reset();
-  has_changed();
+  bound_.reset();
 }
 
 void ArrayScene::show_scalars(const std::string& name, std::uint32_t mapping) {
+  const nb::ft_lock_guard lock(mutex_);
   rastrum::show_scalars(files_, name);
   for (Instance& i : files_.instances) i.scalar_mapping = mapping;
-  has_changed();
+  bound_.reset();
 }
 
 void ArrayScene::spread_isolines(std::size_t mapping, int count) {
   const ScalarRange range = scalar_colors(show().view, mapping).range();
+  const nb::ft_lock_guard lock(mutex_);
   ScalarMapping& m = mappings_.at(mapping);
   for (const overlay::Tick& tick : overlay::ticks(range.low, range.high, count, m.logarithmic))
     m.isolines.push_back(tick.value);
-  has_changed();
+  bound_.reset();
 }
 
 void ArrayScene::add_texture(const Array& pixels) {
@@ -146,43 +154,43 @@ void ArrayScene::add_texture(const Array& pixels) {
       texture.image(x, y) = {channel(0), channel(1), channel(2),
                              pixels.shape(2) == 4 ? channel(3) : std::uint8_t{255}};
     }
-  // A frame may be using the textures that exist.
-  if (textures_.use_count() > 1) textures_ = std::make_shared<std::vector<Texture>>(*textures_);
-  textures_->push_back(std::move(texture));
-  has_changed();
-}
-
-void ArrayScene::set_material(std::size_t number, const Material& material) {
-  if (number < materials_.size())
-    materials_[number] = material;
+  const nb::ft_lock_guard lock(mutex_);
+  bound_.reset();
+  // A frame may be using the textures that exist. The fence orders what the last one read before
+  // what is written here.
+  if (textures_.use_count() > 1)
+    textures_ = std::make_shared<std::vector<Texture>>(*textures_);
   else
-    materials_.push_back(material);
-  has_changed();
+    std::atomic_thread_fence(std::memory_order_acquire);
+  textures_->push_back(std::move(texture));
 }
 
-void ArrayScene::drop_materials() {
-  materials_.clear();
-  for (Added* const a : added_) a->material.reset();
-  has_changed();
+void ArrayScene::set_materials(std::vector<Material> materials,
+                               std::vector<std::optional<std::uint32_t>> of_things) {
+  const nb::ft_lock_guard lock(mutex_);
+  if (of_things.size() != things_)
+    throw Error(Errc::invalid_argument, "materials: there are " + std::to_string(things_) +
+                                            " things, not " + std::to_string(of_things.size()));
+  materials_ = std::move(materials);
+  material_of_ = std::move(of_things);
+  bound_.reset();
 }
 
 void ArrayScene::add_mapping(const ScalarMapping& mapping) {
+  const nb::ft_lock_guard lock(mutex_);
   mappings_.push_back(mapping);
-  has_changed();
+  bound_.reset();
 }
 
 void ArrayScene::add(nb::object geometry, nb::object look, std::optional<double> scalar,
                      std::uint32_t mapping) {
   (void)nb::cast<const ArrayGeometry&>(geometry);
   (void)nb::cast<const Look&>(look);
-  order_.push_back(Added{std::move(geometry), std::move(look), scalar, mapping});
-  added_.push_back(&std::get<Added>(order_.back()));
+  const nb::ft_lock_guard lock(mutex_);
+  order_.push_back(Added{std::move(geometry), std::move(look), scalar, mapping, things_++});
+  material_of_.emplace_back();
   primitives_.reset();
-  has_changed();
-}
-
-void ArrayScene::set_material_of(std::size_t thing, std::optional<std::uint32_t> material) {
-  added_.at(thing)->material = material;
+  bound_.reset();
 }
 
 struct ArrayScene::Bound {
@@ -190,11 +198,11 @@ struct ArrayScene::Bound {
 
   SceneBinding binding;
   std::vector<Material> materials{};
+  std::vector<std::optional<std::uint32_t>> material_of{};  ///< for each thing, of `materials`
   std::vector<Texture> all_textures{};  ///< of files and Python, if both have some
   std::shared_ptr<const std::vector<Texture>> of_python{};
   std::vector<ScalarMapping> mappings{};
   std::span<const Texture> textures{};
-  std::uint32_t first_material = 0;  ///< of Python
   bool beside_materials = false;
   bool any_materials = false;   ///< then instances without a material get a plain one
   std::uint32_t plain[2] = {};  ///< without colours, with colours
@@ -206,7 +214,9 @@ std::shared_ptr<const ArrayScene::Bound> ArrayScene::bind(bool beside_materials)
   Bound& b = *bound;
   b.beside_materials = beside_materials;
   b.materials = files_.materials;
-  b.first_material = static_cast<std::uint32_t>(b.materials.size());
+  b.material_of = material_of_;
+  for (std::optional<std::uint32_t>& m : b.material_of)
+    if (m) *m += static_cast<std::uint32_t>(b.materials.size());
   const auto texture_offset = static_cast<std::int32_t>(files_.textures.size());
   for (Material m : materials_) {
     for (std::int32_t* t : {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture,
@@ -237,14 +247,16 @@ std::shared_ptr<const ArrayScene::Bound> ArrayScene::bind(bool beside_materials)
 }
 
 ArrayScene::Shown ArrayScene::show(bool beside_materials) const {
-  if (!bound_ || bound_->beside_materials != beside_materials) bound_ = bind(beside_materials);
   Shown shown;
-  shown.bound = bound_;
-  const Bound& b = *bound_;
-  std::size_t planes = 0;
-  for (const Added* const a : added_) planes += nb::cast<const Look&>(a->look).clip_planes.size();
-  shown.planes.reserve(planes);  // instances view them
-  shown.instances.reserve(files_.instances.size() + added_.size());
+  {
+    const nb::ft_lock_guard lock(mutex_);
+    if (!bound_ || bound_->beside_materials != beside_materials) bound_ = bind(beside_materials);
+    shown.bound = bound_;
+  }
+  const Bound& b = *shown.bound;
+  shown.instances.reserve(files_.instances.size() + things_);
+  std::vector<std::size_t> planes;  // how many each instance has
+  planes.reserve(files_.instances.size() + things_);
   for (const auto& entry : order_) {
     if (const auto* const file = std::get_if<OfFile>(&entry)) {
       for (std::size_t k = 0; k < file->count; ++k) {
@@ -255,42 +267,51 @@ ArrayScene::Shown ArrayScene::show(bool beside_materials) const {
           i.material = b.plain[colored ? 1 : 0];
         }
         shown.instances.push_back(i);
+        planes.push_back(0);
       }
       continue;
     }
     const Added& added = std::get<Added>(entry);
     const auto& arrays = nb::cast<const ArrayGeometry&>(added.geometry);
     const auto& look = nb::cast<const Look&>(added.look);
+    // Another thread may be changing it.
+    const nb::ft_object_guard lock(added.look);
     InstanceView i;
     i.geometry = *shown.geometries.emplace_back(arrays.view);
     if (look.transform) i.object_to_world = matrix(*look.transform, "transform");
     i.opacity = look.opacity;
     i.color = look.color;
-    if (added.material)
-      i.material = *added.material + b.first_material;
+    if (b.material_of[added.number])
+      i.material = b.material_of[added.number];
     else if (b.any_materials)
       i.material = b.plain[arrays.has_colors || i.color ? 1 : 0];
     i.visible = look.visible;
     i.winding = look.winding;
     i.id = look.id;
-    const std::size_t first = shown.planes.size();
+    planes.push_back(look.clip_planes.size());
     shown.planes.insert(shown.planes.end(), look.clip_planes.begin(), look.clip_planes.end());
-    i.clip_planes = std::span<const ClipPlane>(shown.planes).subspan(first);
     i.scalar = added.scalar;
     i.scalar_mapping = added.mapping;
     shown.instances.push_back(i);
   }
+  // Now that all planes are there, their memory stays.
+  std::span<const ClipPlane> rest(shown.planes);
+  for (std::size_t i = 0; i < planes.size(); rest = rest.subspan(planes[i++]))
+    if (planes[i] > 0) shown.instances[i].clip_planes = rest.first(planes[i]);
   shown.view = {shown.instances, b.materials, b.textures, b.mappings};
   return shown;
 }
 
 std::uint64_t ArrayScene::primitive_count() const {
-  if (!primitives_) {
-    primitives_ = 0;
-    for (const InstanceView& i : show().instances)
-      *primitives_ += rastrum::primitive_count(i.geometry);
+  {
+    const nb::ft_lock_guard lock(mutex_);
+    if (primitives_) return *primitives_;
   }
-  return *primitives_;
+  std::uint64_t count = 0;
+  for (const InstanceView& i : show().instances) count += rastrum::primitive_count(i.geometry);
+  const nb::ft_lock_guard lock(mutex_);
+  primitives_ = count;
+  return count;
 }
 
 void bind_scenes(nb::module_& m) {
@@ -330,9 +351,9 @@ void bind_scenes(nb::module_& m) {
             if (transform) (void)matrix(*transform, "transform");
             l.transform = transform;
           },
-          arg("transform").none())
-      .def_rw("opacity", &Look::opacity)
-      .def_rw("visible", &Look::visible)
+          arg("transform").none(), nb::lock_self())
+      .def_rw("opacity", &Look::opacity, nb::lock_self())
+      .def_rw("visible", &Look::visible, nb::lock_self())
       .def_prop_rw(
           "color",
           [](const Look& l) -> std::optional<Numbers4> {
@@ -343,29 +364,29 @@ void bind_scenes(nb::module_& m) {
             l.color.reset();
             if (color) l.color = vec4(*color);
           },
-          arg("color").none())
+          arg("color").none(), nb::lock_self())
       .def_prop_rw(
           "winding", [](const Look& l) { return static_cast<int>(l.winding); },
           [](Look& l, const std::string& winding) {
             l.winding =
                 named<Winding>("winding", winding, {"counter_clockwise", "clockwise", "either"});
-          })
-      .def_rw("id", &Look::id, arg("id").none())
+          },
+          nb::lock_self())
+      .def_rw("id", &Look::id, arg("id").none(), nb::lock_self())
       .def_prop_rw(
           "clip_planes", [](const Look& l) { return l.clip_planes.size(); },
           [](Look& l, const std::vector<Numbers4>& planes) {
             l.clip_planes.clear();
             for (const Numbers4& p : planes) l.clip_planes.push_back({{p[0], p[1], p[2]}, p[3]});
-          });
+          },
+          nb::lock_self());
   nb::class_<ArrayScene>(m, "Scene")
       .def(nb::init<>())
       .def("add_file", &ArrayScene::add_file, arg("file"), arg("crease").none(),
-           arg("memory_limit").none(), arg("allow_outside"),
-           nb::call_guard<nb::gil_scoped_release>())
+           arg("memory_limit").none(), arg("allow_outside"))
       .def("show_scalars", &ArrayScene::show_scalars, arg("name"), arg("mapping"))
       .def("add_texture", &ArrayScene::add_texture, arg("pixels"))
-      .def("set_material", &ArrayScene::set_material, arg("number"), arg("material"))
-      .def("drop_materials", &ArrayScene::drop_materials)
+      .def("set_materials", &ArrayScene::set_materials, arg("materials"), arg("of_things"))
       .def("add_mapping", &ArrayScene::add_mapping, arg("mapping"))
       .def("spread_isolines", &ArrayScene::spread_isolines, arg("mapping"), arg("count"))
       .def_prop_ro("lights", [](const ArrayScene& s) { return s.files().lights; })
@@ -378,7 +399,6 @@ void bind_scenes(nb::module_& m) {
           arg("mapping"))
       .def("add", &ArrayScene::add, arg("geometry"), arg("look"), arg("scalar").none(),
            arg("mapping"))
-      .def("set_material_of", &ArrayScene::set_material_of, arg("thing"), arg("material").none())
       .def_prop_ro("primitives", &ArrayScene::primitive_count)
       .def_prop_ro("instances", [](const ArrayScene& s) { return s.show().view.instances.size(); })
       .def_prop_ro("has_materials",

@@ -14,7 +14,7 @@
 namespace rastrum::python {
 
 /// A Python thing's properties beside its arrays. Scenes read them, and the transform's numbers,
-/// anew for each frame.
+/// anew for each frame. The lock of the Python object guards them where Python has no GIL.
 struct Look {
   std::optional<Array> transform{};  ///< (4, 4) or (3, 4) of float64
   float opacity = 1;
@@ -25,6 +25,8 @@ struct Look {
   std::vector<ClipPlane> clip_planes{};
 };
 
+/// Files, things, mappings and isolines are added before a second thread knows the scene. Textures
+/// and materials may change while other threads draw it.
 class ArrayScene {
  public:
   /// Data that frames of a scene share until something is added to it.
@@ -52,17 +54,15 @@ class ArrayScene {
   /// About `count` isolines at round numbers of the mapping's present range.
   void spread_isolines(std::size_t mapping, int count);
   void add_texture(const Array& pixels);
-  /// Replaces the material with that number, or appends it.
-  void set_material(std::size_t number, const Material& material);
-  /// Removes the materials of set_material from all things.
-  void drop_materials();
+  /// Replaces all materials. `of_things`: for each thing, without files, the number of its own.
+  /// Frames see all of the change or nothing.
+  void set_materials(std::vector<Material> materials,
+                     std::vector<std::optional<std::uint32_t>> of_things);
   void add_mapping(const ScalarMapping& mapping);
   /// `scalar`: a number for the whole thing; `mapping`: an add_mapping's number, for its scalars.
   /// Keeps the objects, an ArrayGeometry and a Look, alive.
   void add(nb::object geometry, nb::object look, std::optional<double> scalar,
            std::uint32_t mapping);
-  /// `material`: a number of set_material; `thing`: its number, without files.
-  void set_material_of(std::size_t thing, std::optional<std::uint32_t> material);
 
   /// The present scene. Textures and materials of files come first. `beside_materials`: as if the
   /// scene had materials. Requires the GIL.
@@ -75,20 +75,23 @@ class ArrayScene {
     nb::object geometry, look;
     std::optional<double> scalar;
     std::uint32_t mapping;
-    std::optional<std::uint32_t> material{};
+    std::size_t number;  ///< among the things
   };
   struct OfFile {
     std::size_t first, count;
   };
   [[nodiscard]] std::shared_ptr<const Bound> bind(bool beside_materials) const;
-  void has_changed() { bound_.reset(); }
 
+  /// Guards all below where Python has no GIL. No Python code runs while it is held, so that a fork
+  /// finds it free.
+  mutable nb::ft_mutex mutex_{};
   Scene files_;
   std::vector<Material> materials_;
+  std::vector<std::optional<std::uint32_t>> material_of_;  ///< for each thing
   std::shared_ptr<std::vector<Texture>> textures_ = std::make_shared<std::vector<Texture>>();
   std::vector<ScalarMapping> mappings_;
   std::deque<std::variant<OfFile, Added>> order_;
-  std::vector<Added*> added_;
+  std::size_t things_ = 0;
   mutable std::shared_ptr<const Bound> bound_;
   mutable std::optional<std::uint64_t> primitives_;
 };
