@@ -8,6 +8,7 @@ import os
 import numpy as np
 
 from ._errors import ArgumentError, FormatError, UnsupportedError
+from ._locks import lock_in
 
 _OURS = {".obj", ".ply", ".stl", ".off", ".gltf", ".glb", ".npy"}
 # The reader of vtkmodules for what a name ends with.
@@ -18,6 +19,9 @@ _VTK = {".vtp": ("vtkIOXML", "vtkXMLPolyDataReader"), ".vtu": ("vtkIOXML", "vtkX
         ".exo": ("vtkIOExodus", "vtkExodusIIReader")}
 # Endings among these that meshio reads, too.
 _MESHIO = {".vtu", ".vtk", ".e", ".ex2", ".exo"}
+# One file at a time has its messages caught, because sys.stdout and VTK's window are the process's. Two threads would put
+# each other's back.
+_locks = {}
 
 
 def reads(path):
@@ -70,7 +74,7 @@ def _meshio(path):
     said = io.StringIO()
     try:
         # meshio prints what is wrong, and exits the interpreter.
-        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+        with lock_in(_locks), contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
             return meshio.read(path)
     except ImportError as e:
         raise UnsupportedError(f"{path}: meshio needs {e.name or e} for it, which is not installed") from e
@@ -89,20 +93,21 @@ def _vtk(path, module, reader):
     except ImportError as e:
         raise UnsupportedError(f"{path}: needs the vtk wheel to be read, which is not installed (pip install rastrum[vtk])") from e
     # VTK's messages go into the exception, not to stderr.
-    said, before = vtkStringOutputWindow(), vtkOutputWindow.GetInstance()
-    vtkOutputWindow.SetInstance(said)
-    try:
-        made.SetFileName(path)
-        blocks = hasattr(made, "GetNumberOfTimeSteps") and hasattr(made, "SetAllArrayStatus")
-        if blocks:  # Exodus: several blocks, of which all numbers are read
-            made.UpdateInformation()
-            for kind in (made.NODAL, made.ELEM_BLOCK):
-                made.SetAllArrayStatus(kind, 1)
-        surface = vtkCompositeDataGeometryFilter() if blocks else vtkGeometryFilter()
-        surface.SetInputConnection(made.GetOutputPort())
-        surface.Update()
-    finally:
-        vtkOutputWindow.SetInstance(before)
+    with lock_in(_locks):
+        said, before = vtkStringOutputWindow(), vtkOutputWindow.GetInstance()
+        vtkOutputWindow.SetInstance(said)
+        try:
+            made.SetFileName(path)
+            blocks = hasattr(made, "GetNumberOfTimeSteps") and hasattr(made, "SetAllArrayStatus")
+            if blocks:  # Exodus: several blocks, of which all numbers are read
+                made.UpdateInformation()
+                for kind in (made.NODAL, made.ELEM_BLOCK):
+                    made.SetAllArrayStatus(kind, 1)
+            surface = vtkCompositeDataGeometryFilter() if blocks else vtkGeometryFilter()
+            surface.SetInputConnection(made.GetOutputPort())
+            surface.Update()
+        finally:
+            vtkOutputWindow.SetInstance(before)
     found = surface.GetOutput()
     if found is None or found.GetNumberOfPoints() == 0:
         words = [line for line in (said.GetOutput() or "").splitlines() if line.strip()]
