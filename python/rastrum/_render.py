@@ -419,7 +419,7 @@ atexit.register(_default.clear)
 def _kept(threads, device, memory_limit, isa):
     key = threads, device, memory_limit, isa
     found = _default.get(key)
-    if found is None:  # of threads that come here at once all take the first one's
+    if found is None:  # threads that come here at once all take the first one's
         found = _default.setdefault(key, Renderer(threads=threads, device=device, memory_limit=memory_limit, isa=isa))
     return found
 

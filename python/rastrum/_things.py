@@ -195,7 +195,7 @@ _LOOK = {"color": _look_color, "opacity": _part, "material": _look_material,
 _PLAIN = {"color": None, "opacity": 1.0, "material": None, "transform": None, "visible": True, "id": None,
           "winding": "counter_clockwise", "clip_planes": ()}
 _FIXED = (type(None), str, bool, int, float, np.generic)
-#: Of _LOOK's fields of all things: an assignment and a frame's reading in place are one after the other.
+#: An assignment to a thing's look and a frame's reading of it in place are one after the other.
 _locks = {}
 
 

@@ -63,8 +63,8 @@ template <ViewedValue T>
 /// Row-major (4, 4) or (3, 4) of float64.
 [[nodiscard]] Mat4d matrix(const Array& array, const char* name);
 
-/// What a signal's handler tells frames. The kernel may run the handler on any thread, and so after
-/// the frame has ended: these are static and never freed.
+/// A signal's handler sets it, and frames read it. The kernel may run the handler on any thread,
+/// and so after the frame has ended: these are static and never freed.
 struct SignalFlag {
   std::atomic<bool> came{false};
   [[nodiscard]] bool stop_requested() const { return came.load(std::memory_order_relaxed); }

@@ -155,7 +155,7 @@ void DeferredInterrupt::exit() {
 
 void DeferredInterrupt::raise() {
   if (!installed_) return;
-  // What comes after this stops the next frame.
+  // A signal that comes after this stops the next frame.
   if (deferred.came.exchange(false)) PyErr_SetInterrupt();
   // Also handles signals that came just before raise() began.
   if (PyErr_CheckSignals() != 0) throw nb::python_error();
