@@ -5,7 +5,6 @@ change, and no others. With the GIL threads change often here; a Python without 
 import multiprocessing
 import sys
 import threading
-import time
 
 import numpy as np
 import pytest
@@ -184,38 +183,6 @@ def test_a_forked_child_picks_in_a_picture_of_its_parent(sheet):
     assert queue.get(timeout=30) == expected
     child.join(10)
     assert child.exitcode == 0
-
-
-def _draw_in_child(scene, queue):
-    queue.put(rr.digest(rr.render(scene, CAMERA, size=SIZE).color))
-
-
-def test_a_child_that_is_forked_while_threads_draw(sheet):
-    mesh = rr.Mesh(*sheet, color=[1.0, 0.0, 0.0])  # read for each frame, under a lock
-    scene = rr.Scene([mesh])
-    expected = rr.digest(rr.render(scene, CAMERA, size=SIZE).color)
-    context = multiprocessing.get_context("fork")
-    queue, stop = context.Queue(), threading.Event()
-
-    def draw(renderer):
-        while not stop.is_set():
-            renderer.render(scene, CAMERA, size=SIZE)
-    drawing = [threading.Thread(target=draw, args=(rr.Renderer(threads=1),), daemon=True) for _ in range(2)]
-    for t in drawing:
-        t.start()
-    try:
-        time.sleep(0.05)
-        children = [context.Process(target=_draw_in_child, args=(scene, queue)) for _ in range(5)]
-        for c in children:
-            c.start()
-        assert [queue.get(timeout=60) for _ in children] == [expected] * 5
-        for c in children:
-            c.join(10)
-            assert c.exitcode == 0
-    finally:
-        stop.set()
-        for t in drawing:
-            t.join(60)
 
 
 def test_files_that_another_library_reads_leave_stdout(tmp_path, sheet):
