@@ -60,10 +60,11 @@ class RecordedLoop {
 
 std::unique_ptr<Scheduler> make_scheduler(int count) {
 #if defined(RASTRUM_TBB)
-  return make_tbb_scheduler(count);
-#else
-  return make_pool_scheduler(count);
+  // A forked child has oneTBB's locks as they were, perhaps held by threads that it has not: one
+  // that goes to sleep holds some. It would wait for them for ever.
+  if (generation() == 0) return make_tbb_scheduler(count);
 #endif
+  return make_pool_scheduler(count);
 }
 
 }  // namespace

@@ -33,17 +33,6 @@ int cores() {
   return std::max(static_cast<int>(std::thread::hardware_concurrency()), 1);
 }
 
-/// How many forks lie between the first process and this one. A fork copies a team without its
-/// threads, and its mutex perhaps while one of them holds it.
-int generation() {
-  static std::atomic<int> forks = 0;
-#if defined(__unix__) || defined(__APPLE__)
-  static const int registered = pthread_atfork(nullptr, nullptr, [] { ++forks; });
-  static_cast<void>(registered);
-#endif
-  return forks.load(std::memory_order_relaxed);
-}
-
 /// Yields until done() or for some 50 µs: going to sleep and being woken costs as much.
 template <class Done>
 void spin_until(const Done& done) {
@@ -199,6 +188,15 @@ class PoolScheduler final : public Scheduler {
 };
 
 }  // namespace
+
+int generation() {
+  static std::atomic<int> forks = 0;
+#if defined(__unix__) || defined(__APPLE__)
+  static const int registered = pthread_atfork(nullptr, nullptr, [] { ++forks; });
+  static_cast<void>(registered);
+#endif
+  return forks.load(std::memory_order_relaxed);
+}
 
 std::unique_ptr<Scheduler> make_pool_scheduler(int count) {
   return std::make_unique<PoolScheduler>(count);

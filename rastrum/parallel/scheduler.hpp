@@ -27,6 +27,10 @@ class Scheduler {
   virtual void run(std::size_t n, std::size_t grain, Body body, void* data) = 0;
 };
 
+/// How many forks lie between the process that first asked and this one. A fork copies a scheduler
+/// without its threads, and a mutex perhaps while one of them holds it.
+[[nodiscard]] int generation();
+
 /// `count` threads, 0 for as many as the process may run on.
 [[nodiscard]] std::unique_ptr<Scheduler> make_pool_scheduler(int count);
 [[nodiscard]] std::unique_ptr<Scheduler> make_tbb_scheduler(int count);  ///< with RASTRUM_TBB

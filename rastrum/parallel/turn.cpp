@@ -3,6 +3,10 @@
 
 #include <utility>
 
+#if defined(__unix__) || defined(__APPLE__)
+#include <pthread.h>
+#endif
+
 #include <rastrum/core/reject.hpp>
 
 namespace rastrum::parallel {
@@ -13,6 +17,21 @@ std::mutex turns_guard;
 CallingTurn* newest_turn = nullptr;
 
 }  // namespace
+
+#if defined(__unix__) || defined(__APPLE__)
+/// A fork waits for the guard. Its child has the turns of the thread that forked, and no others.
+struct CallingTurn::AtFork {
+  static const int registered;
+};
+const int CallingTurn::AtFork::registered =
+    pthread_atfork([] { turns_guard.lock(); }, [] { turns_guard.unlock(); },
+                   [] {
+                     newest_turn = current_guarded();
+                     for (CallingTurn* t = newest_turn; t != nullptr; t = t->next_)
+                       t->next_ = t->outer_;
+                     turns_guard.unlock();
+                   });
+#endif
 
 CallingTurn::CallingTurn(std::mutex& one_at_a_time, StopToken stop)
     : lock_(not_within(one_at_a_time)), mutex_(one_at_a_time), outer_(current()) {
@@ -29,15 +48,19 @@ CallingTurn::CallingTurn(std::mutex& one_at_a_time, StopToken stop)
 CallingTurn::~CallingTurn() {
   const std::lock_guard<std::mutex> lock(turns_guard);
   CallingTurn** at = &newest_turn;
-  while (*at != this) at = &(*at)->next_;
-  *at = next_;
+  while (*at != nullptr && *at != this) at = &(*at)->next_;
+  if (*at == this) *at = next_;  // else a fork within an inner scope has left it out
+}
+
+CallingTurn* CallingTurn::current() {
+  if (StopScope::current() == nullptr) return nullptr;
+  const std::lock_guard<std::mutex> lock(turns_guard);
+  return current_guarded();
 }
 
 // Finds the turn by its token, which is in force in all its work and nowhere else.
-CallingTurn* CallingTurn::current() {
+CallingTurn* CallingTurn::current_guarded() {
   const StopToken* const token = StopScope::current();
-  if (token == nullptr) return nullptr;
-  const std::lock_guard<std::mutex> lock(turns_guard);
   CallingTurn* turn = newest_turn;
   while (turn != nullptr && &turn->token_ != token) turn = turn->next_;
   return turn;

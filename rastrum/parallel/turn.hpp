@@ -61,6 +61,8 @@ class CallingTurn {
 
   /// The turn that the calling thread works for, or null.
   static CallingTurn* current();
+  static CallingTurn* current_guarded();
+  struct AtFork;
   static void keep(std::exception_ptr thrown);
   void rethrow() const;
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 #include <memory>
+#include <mutex>
 #include <numeric>
 #include <ostream>
 #include <stdexcept>
@@ -18,6 +19,7 @@
 
 #include <rastrum/parallel/exec.hpp>
 #include <rastrum/parallel/scheduler.hpp>
+#include <rastrum/parallel/turn.hpp>
 #include <rastrum/stop.hpp>
 
 #include "tests/support/stop_trigger.hpp"
@@ -204,27 +206,63 @@ INSTANTIATE_TEST_SUITE_P(Tbb, ThreadCounts,
                                          Team{8, make_tbb_scheduler}));
 #endif
 
+/// Runs `work` in a forked child, which has 30 seconds for it, and `meanwhile` in this process.
+template <class Work, class Meanwhile>
+void expect_done_in_child(const Work& work, const Meanwhile& meanwhile) {
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    alarm(30);  // ends a child that waits for threads that are not there
+    work();
+    _exit(testing::Test::HasFailure() ? 1 : 0);
+  }
+  meanwhile();
+  int status = -1;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFEXITED(status)) << "signal " << WTERMSIG(status);
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
 // Python's multiprocessing forks a process that has drawn. The child has no threads; it draws
 // alone.
 TEST(Pool, WorksAndEndsInAForkedChild) {
   if (kThreadSanitizer) GTEST_SKIP() << "the sanitizer starts no threads after a fork";
   auto exec = std::make_unique<Threads>(make_pool_scheduler(4));
   expect_all_threads_at_once(*exec, 4);
-  const pid_t child = fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
-    alarm(60);  // ends a child that waits for threads that are not there
-    expect_each_index_once(*exec, 1000);
-    exec = std::make_unique<Threads>(make_pool_scheduler(4));  // which has threads again
-    expect_all_threads_at_once(*exec, 4);
-    exec.reset();
-    _exit(HasFailure() ? 1 : 0);
-  }
-  expect_each_index_once(*exec, 1000);
-  int status = -1;
-  ASSERT_EQ(waitpid(child, &status, 0), child);
-  EXPECT_TRUE(WIFEXITED(status));
-  EXPECT_EQ(WEXITSTATUS(status), 0);
+  expect_done_in_child(
+      [&] {
+        expect_each_index_once(*exec, 1000);
+        exec = std::make_unique<Threads>(make_pool_scheduler(4));  // which has threads again
+        expect_all_threads_at_once(*exec, 4);
+        exec.reset();
+      },
+      [&] { expect_each_index_once(*exec, 1000); });
+}
+
+// The parent's threads hold oneTBB's locks now and then, also while they go to sleep.
+TEST(Threads, AreOfThePoolInAForkedChild) {
+  if (kThreadSanitizer) GTEST_SKIP() << "the sanitizer starts no threads after a fork";
+  Threads exec(4);
+  std::atomic<bool> done = false;
+  std::jthread busy([&] {
+    while (!done) expect_each_index_once(exec, 100);
+  });
+  for (int i = 0; i < 50 && !HasFailure(); ++i)
+    expect_done_in_child([] { expect_all_threads_at_once(*std::make_unique<Threads>(4), 4); },
+                         [] {});
+  done = true;
+}
+
+TEST(Turns, BeginInAChildThatIsForkedWhileThreadsTakeSome) {
+  if (kThreadSanitizer) GTEST_SKIP() << "the sanitizer sees no locks of a forked child";
+  std::mutex mine, others;
+  std::atomic<bool> done = false;
+  std::jthread busy([&] {
+    while (!done) const CallingTurn turn(others, {});
+  });
+  for (int i = 0; i < 50 && !HasFailure(); ++i)
+    expect_done_in_child([&] { const CallingTurn turn(mine, {}); }, [] {});
+  done = true;
 }
 
 }  // namespace
