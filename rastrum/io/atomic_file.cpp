@@ -2,6 +2,7 @@
 #include <rastrum/io.hpp>
 
 #include <fcntl.h>
+#include <pthread.h>
 #include <sys/file.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
@@ -82,7 +83,11 @@ struct Live {
   std::set<std::string> names;
 };
 Live& live() {
-  static Live* const all = new Live;  // never destroyed: a thread may still write at the end
+  static Live* all = new Live;  // never destroyed: a thread may still write at the end
+  // A forked child has its own. Another thread may hold the parent's, whose names are not the
+  // child's to remove.
+  static const int registered = pthread_atfork(nullptr, nullptr, [] { all = new Live; });
+  static_cast<void>(registered);
   return *all;
 }
 
