@@ -97,8 +97,7 @@ class Scene:
 
     def _texture(self, pixels):
         if id(pixels) not in self._textures:
-            self._made.add_texture(pixels)
-            self._textures[id(pixels)] = pixels, len(self._textures)
+            self._textures[id(pixels)] = pixels, self._made.add_texture(pixels)
         return self._textures[id(pixels)][1]
 
     @staticmethod

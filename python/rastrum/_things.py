@@ -264,11 +264,12 @@ class _Thing:
 
     def _read_in_place(self):
         """Reads the values again that may have changed in place."""
-        if not self._in_place:
-            return
-        with lock_in(_locks):
-            for name in self._in_place:
-                setattr(self._look, name, _LOOK[name](getattr(self, name), name))
+        for name in tuple(self._in_place):
+            value = getattr(self, name)
+            made = _LOOK[name](value, name)  # without the lock: a caller's class may run here
+            with lock_in(_locks):
+                if getattr(self, name) is value:  # else the assignment has set it
+                    setattr(self._look, name, made)
 
     @property
     def primitives(self):

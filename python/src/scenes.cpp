@@ -137,7 +137,7 @@ void ArrayScene::spread_isolines(std::size_t mapping, int count) {
   bound_.reset();
 }
 
-void ArrayScene::add_texture(const Array& pixels) {
+std::size_t ArrayScene::add_texture(const Array& pixels) {
   if (pixels.ndim() != 3 || pixels.dtype() != nb::dtype<std::uint8_t>() ||
       (pixels.shape(2) != 3 && pixels.shape(2) != 4))
     throw Error(Errc::invalid_argument, "texture: must be (H, W, 3 or 4) of uint8");
@@ -163,6 +163,7 @@ void ArrayScene::add_texture(const Array& pixels) {
   else
     std::atomic_thread_fence(std::memory_order_acquire);
   textures_->push_back(std::move(texture));
+  return textures_->size() - 1;
 }
 
 void ArrayScene::set_materials(std::vector<Material> materials,

@@ -53,7 +53,8 @@ class ArrayScene {
   void show_scalars(const std::string& name, std::uint32_t mapping);
   /// About `count` isolines at round numbers of the mapping's present range.
   void spread_isolines(std::size_t mapping, int count);
-  void add_texture(const Array& pixels);
+  /// Returns its number.
+  std::size_t add_texture(const Array& pixels);
   /// Replaces all materials. `of_things`: for each thing, without files, the number of its own.
   /// Frames see all of the change or nothing.
   void set_materials(std::vector<Material> materials,
