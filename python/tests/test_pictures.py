@@ -275,7 +275,8 @@ def test_forked_workers_draw(sheet):
     expected = rr.digest(rr.render(sheet, size=SIZE).color)  # the parent has threads by now
     context = multiprocessing.get_context("fork")
     queue = context.Queue()
-    children = [context.Process(target=_in_child, args=(sheet, queue)) for _ in range(3)]
+    # Daemons, so that one that hangs fails this test and is not waited for at the end.
+    children = [context.Process(target=_in_child, args=(sheet, queue), daemon=True) for _ in range(3)]
     for c in children:
         c.start()
     assert [queue.get(timeout=30) for _ in children] == [expected] * 3
@@ -284,9 +285,11 @@ def test_forked_workers_draw(sheet):
         assert c.exitcode == 0
     # One that is killed while it draws takes nothing with it.
     drawn = context.Value("i", 0)
-    child = context.Process(target=_draw_for_ever, args=(sheet, drawn))
+    child = context.Process(target=_draw_for_ever, args=(sheet, drawn), daemon=True)
     child.start()
+    end = time.monotonic() + 30
     while drawn.value < 5:
+        assert child.is_alive() and time.monotonic() < end, f"a forked child drew {drawn.value} pictures, not 5, and has exit code {child.exitcode}"
         time.sleep(0.01)
     child.kill()
     child.join(10)

@@ -120,7 +120,7 @@ def test_a_forked_child_draws_the_same(heights):
 
     def draw():
         child.send(rr.digest(terrain.render(size=SIZE).color))
-    worker = multiprocessing.get_context("fork").Process(target=draw)
+    worker = multiprocessing.get_context("fork").Process(target=draw, daemon=True)
     worker.start()
     assert parent.poll(30) and parent.recv() == here
     worker.join(30)

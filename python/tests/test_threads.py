@@ -178,11 +178,42 @@ def test_a_forked_child_picks_in_a_picture_of_its_parent(sheet):
     assert expected is not None
     context = multiprocessing.get_context("fork")
     queue = context.Queue()
-    child = context.Process(target=_pick_in_child, args=(picture, queue))
+    child = context.Process(target=_pick_in_child, args=(picture, queue), daemon=True)
     child.start()
     assert queue.get(timeout=30) == expected
     child.join(10)
     assert child.exitcode == 0
+
+
+def _draw_in_child(scene, queue):
+    queue.put(rr.digest(rr.render(scene, CAMERA, size=SIZE).color))
+
+
+def test_a_child_that_is_forked_while_threads_draw(sheet):
+    mesh = rr.Mesh(*sheet, color=[1.0, 0.0, 0.0])  # read for each frame, under a lock
+    scene = rr.Scene([mesh])
+    expected = rr.digest(rr.render(scene, CAMERA, size=SIZE).color)
+    context = multiprocessing.get_context("fork")
+    queue, stop = context.Queue(), threading.Event()
+
+    def draw(renderer):
+        while not stop.is_set():
+            renderer.render(scene, CAMERA, size=SIZE)
+    drawing = [threading.Thread(target=draw, args=(rr.Renderer(threads=2),), daemon=True) for _ in range(2)]
+    for t in drawing:
+        t.start()
+    try:
+        children = [context.Process(target=_draw_in_child, args=(scene, queue), daemon=True) for _ in range(20)]
+        for c in children:
+            c.start()
+        assert [queue.get(timeout=60) for _ in children] == [expected] * len(children)
+        for c in children:
+            c.join(10)
+            assert c.exitcode == 0
+    finally:
+        stop.set()
+        for t in drawing:
+            t.join(60)
 
 
 def test_files_that_another_library_reads_leave_stdout(tmp_path, sheet):
