@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <memory>
 #include <optional>
 #include <thread>
 #include <vector>
@@ -83,17 +84,24 @@ int limited(int count) {
 
 class TbbScheduler final : public Scheduler {
  public:
-  explicit TbbScheduler(int count) : arena_(count > 0 ? count : tbb::task_arena::automatic) {
-    if (count > tbb::this_task_arena::max_concurrency())
-      more_than_cores_.emplace(tbb::global_control::max_allowed_parallelism,
-                               static_cast<std::size_t>(count));
-    arena_.initialize();
+  explicit TbbScheduler(int count) : arena_(std::make_unique<Arena>(count)) {}
+  ~TbbScheduler() override {
+    // A copy's arena knows sleeping threads by what was on their stacks, which are others' now.
+    if (is_copy()) static_cast<void>(arena_.release());
   }
-  [[nodiscard]] int concurrency() const override { return arena_.max_concurrency(); }
+  TbbScheduler(const TbbScheduler&) = delete;
+  TbbScheduler& operator=(const TbbScheduler&) = delete;
+
+  [[nodiscard]] int concurrency() const override { return concurrency_; }
   void run(std::size_t n, std::size_t grain, Body body, void* data) override {
+    if (is_copy()) {
+      for (std::size_t begin = 0; begin < n; begin += std::min(grain, n - begin))
+        body(data, begin, begin + std::min(grain, n - begin));
+      return;
+    }
     HandOver fork, join;
     const AroundLoop around(fork, join);
-    arena_.execute([&] {
+    arena_->arena.execute([&] {
       tbb::parallel_for(
           tbb::blocked_range<std::size_t>(0, n, grain),
           [&](const tbb::blocked_range<std::size_t>& range) {
@@ -105,8 +113,22 @@ class TbbScheduler final : public Scheduler {
   }
 
  private:
-  std::optional<tbb::global_control> more_than_cores_;
-  tbb::task_arena arena_;
+  struct Arena {
+    explicit Arena(int count) : arena(count > 0 ? count : tbb::task_arena::automatic) {
+      if (count > tbb::this_task_arena::max_concurrency())
+        more_than_cores.emplace(tbb::global_control::max_allowed_parallelism,
+                                static_cast<std::size_t>(count));
+      arena.initialize();
+    }
+    std::optional<tbb::global_control> more_than_cores;
+    tbb::task_arena arena;
+  };
+  /// Whether a fork has made this one, which has no threads then.
+  [[nodiscard]] bool is_copy() const { return generation_ != generation(); }
+
+  const int generation_ = generation();
+  std::unique_ptr<Arena> arena_;
+  const int concurrency_ = arena_->arena.max_concurrency();
 };
 
 }  // namespace

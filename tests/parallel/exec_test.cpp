@@ -242,15 +242,17 @@ TEST(Pool, WorksAndEndsInAForkedChild) {
 // The parent's threads hold oneTBB's locks now and then, also while they go to sleep.
 TEST(Threads, AreOfThePoolInAForkedChild) {
   if (kThreadSanitizer) GTEST_SKIP() << "the sanitizer starts no threads after a fork";
-  Threads exec(4);
-  std::atomic<bool> done = false;
-  std::jthread busy([&] {
-    while (!done) expect_each_index_once(exec, 100);
-  });
-  for (int i = 0; i < 50 && !HasFailure(); ++i)
-    expect_done_in_child([] { expect_all_threads_at_once(*std::make_unique<Threads>(4), 4); },
-                         [] {});
-  done = true;
+  auto exec = std::make_unique<Threads>(4);
+  for (int i = 0; i < 50 && !HasFailure(); ++i) {
+    expect_all_threads_at_once(*exec, 4);
+    expect_done_in_child(
+        [&] {
+          expect_all_threads_at_once(*std::make_unique<Threads>(4), 4);
+          expect_each_index_once(*exec, 1000);
+          exec.reset();
+        },
+        [] {});
+  }
 }
 
 TEST(Turns, BeginInAChildThatIsForkedWhileThreadsTakeSome) {
