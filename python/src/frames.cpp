@@ -184,7 +184,7 @@ void rasterize(FrameRenderer& renderer, const std::vector<Array>& positions, con
   for (const Array& p : positions)
     all.push_back({values<Vec4>(p, "pos"), corners, 0, corners.size() / 3});
   if (!ranges.empty()) {
-    all.assign(ranges.size(), all.at(0));
+    all = std::vector<ClipTriangles>(ranges.size(), all.at(0));
     for (std::size_t i = 0; i < ranges.size(); ++i) {
       std::tie(all[i].first, all[i].count) = ranges[i];
       if (all[i].first > corners.size() / 3 || all[i].count > corners.size() / 3 - all[i].first)
