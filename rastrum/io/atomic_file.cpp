@@ -6,6 +6,7 @@
 #include <sys/file.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -295,7 +296,8 @@ std::FILE* open_scratch_file() {
   int fd = -1;
   for (const char* const folder : {said, "/tmp", "/var/tmp", "."})
     if (fd < 0 && folder != nullptr && *folder != '\0') fd = open_nameless(folder);
-  if (fd < 0) fd = ::memfd_create("rastrum", MFD_CLOEXEC);
+  // memfd_create, which glibc has from 2.27 on.
+  if (fd < 0) fd = static_cast<int>(::syscall(SYS_memfd_create, "rastrum", 1U /* MFD_CLOEXEC */));
   if (fd < 0) return nullptr;
   std::FILE* const stream = ::fdopen(fd, "w+b");
   if (stream == nullptr) ::close(fd);

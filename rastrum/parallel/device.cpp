@@ -6,6 +6,9 @@
 #include <rastrum/parallel/simd_targets.hpp>
 
 #include <hwy/detect_targets.h>
+#if HWY_ARCH_X86
+#include <cpuid.h>
+#endif
 
 #include <algorithm>
 
@@ -52,15 +55,22 @@ std::vector<Isa> available_isas() {
   std::vector<Isa> isas{Isa::scalar};
 #if HWY_ARCH_X86
   // The features that Highway's targets of these names use. Every processor with AVX2, BMI2 and FMA
-  // also has LZCNT and F16C, which not all compilers can ask for.
-  __builtin_cpu_init();
-  const bool sse4 = __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("ssse3") &&
-                    __builtin_cpu_supports("aes") && __builtin_cpu_supports("pclmul");
-  const bool avx2 = sse4 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") &&
-                    __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("fma");
-  const bool avx512 = avx2 && __builtin_cpu_supports("avx512f") &&
-                      __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512dq") &&
-                      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512cd");
+  // also has LZCNT and F16C. Not every compiler's library knows the processor, so cpuid is asked.
+  unsigned eax = 0, ebx = 0, ecx = 0, edx = 0, saved = 0;
+  __get_cpuid(1, &eax, &ebx, &ecx, &edx);
+  const auto has_all = [](unsigned flags, unsigned wanted) { return (flags & wanted) == wanted; };
+  const bool sse4 = has_all(ecx, bit_SSE4_2 | bit_SSSE3 | bit_AES | bit_PCLMUL);
+  const bool fma = has_all(ecx, bit_FMA);
+  // The system must save the wide registers, too: xgetbv says which it saves.
+  if (has_all(ecx, bit_OSXSAVE)) __asm__("xgetbv" : "=a"(saved), "=d"(edx) : "c"(0));
+  constexpr unsigned kSse = 1U << 1, kAvx = 1U << 2, kMasks = 1U << 5, kHighHalves = 1U << 6,
+                     kUpperHalf = 1U << 7;
+  if (__get_cpuid_count(7, 0, &eax, &ebx, &ecx, &edx) == 0) ebx = 0;
+  const bool avx2 =
+      sse4 && fma && has_all(saved, kSse | kAvx) && has_all(ebx, bit_AVX2 | bit_BMI | bit_BMI2);
+  const bool avx512 =
+      avx2 && has_all(saved, kMasks | kHighHalves | kUpperHalf) &&
+      has_all(ebx, bit_AVX512F | bit_AVX512VL | bit_AVX512DQ | bit_AVX512BW | bit_AVX512CD);
   if (sse4 && (HWY_TARGETS & HWY_SSE4) != 0) isas.push_back(Isa::sse4);
   if (avx2 && (HWY_TARGETS & HWY_AVX2) != 0) isas.push_back(Isa::avx2);
   if (avx512 && (HWY_TARGETS & HWY_AVX3) != 0) isas.push_back(Isa::avx512);
