@@ -94,9 +94,9 @@ def main():
     parser.add_argument("--seconds", type=float, default=1.0)
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "out" / "python")
     options = parser.parse_args()
-    wheel = options.wheel or max((ROOT / "out" / "wheel").glob("*.whl"), default=None)
+    wheel = options.wheel or max((ROOT / "out" / "release").glob("*x86_64.whl"), default=None)
     if wheel is None:
-        raise SystemExit("there is no wheel: ./dev wheel makes one")
+        raise SystemExit("there is no wheel: ./dev release wheels makes some")
     options.out.mkdir(parents=True, exist_ok=True)
     contenders, wrong = [], []
     for name in dict.fromkeys([*OURS, *options.only]):

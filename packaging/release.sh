@@ -1,0 +1,371 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Makes packages that ask nothing of the system, in out/release (`./dev release`).
+#
+# usage: packaging/release.sh [PART…]     (all parts without a PART)
+#   wheels    Python's, for x86-64 and AArch64 with glibc 2.17 or later
+#   programs  `rastrum` as one static file, for both
+#   try       both, where they have nothing else (root; qemu-user-static for AArch64)
+#   sdist     the source package for Python, built and tried without network
+#   deb       Debian's packages, tried in a Debian that has nothing else (root, mmdebstrap)
+#   image     the programs as images of containers (umoci), tried by podman
+#   sbom      which libraries wheels and programs contain (CycloneDX)
+#   daily     not one of all: a quick wheel, for `./dev check`
+#
+# zig's clang compiles them (PyPI's ziglang), which has the libraries of old systems. The libraries for files are static,
+# of Debian's source packages (third_parties/CMakeLists.txt), whose licences travel along.
+set -euo pipefail
+shopt -s inherit_errexit
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+
+readonly work="$PWD/build/packages" out="$PWD/out/release" zig_version=0.17.0
+readonly processors=(x86_64 aarch64)
+readonly sources=(zlib libpng1.6 libdeflate libjpeg-turbo meshoptimizer libwebp imath openexr muparser)
+# The wheel for 3.12 serves all later Pythons.
+readonly pythons=(3.10 3.11 3.12)
+
+# python_of VERSION: a Python of this version, on the PATH or of pyenv.
+python_of() {
+  local found
+  for found in "$(command -v "python$1" || true)" "$HOME"/.pyenv/versions/"$1".*/bin/python; do
+    [[ -x "$found" ]] && "$found" -c '' 2>/dev/null && { echo "$found"; return; }
+  done
+  return 1
+}
+
+# environment PYTHON: a virtual environment with what wheels are built with; prints its folder.
+environment() {
+  local folder="$work/python-$1"
+  if [[ ! -x $folder/bin/auditwheel ]]; then
+    "$(python_of "$1")" -m venv --clear "$folder" >&2
+    "$folder/bin/pip" install -q --disable-pip-version-check -r packaging/requirements.txt "ziglang==$zig_version" >&2
+  fi
+  echo "$folder"
+}
+
+# The environment of the scripts, of zig and of pip: that of the first Python that is here.
+tools() {
+  local python
+  for python in "${pythons[@]}"; do
+    python_of "$python" >/dev/null && { environment "$python"; return; }
+  done
+  echo "release: there is no Python here, of ${pythons[*]}" >&2
+  exit 2
+}
+
+zig() { echo "$(tools)"/lib/python*/site-packages/ziglang/zig; }
+
+# Debian's source packages of the libraries for files, unpacked into $work/sources. The machine's own lists stay as they are.
+fetch_sources() {
+  [[ -e $work/sources/complete ]] && return
+  local lists="$work/apt"
+  rm -rf "$work/sources" "$lists"
+  mkdir -p "$work/sources" "$lists/lists/partial" "$lists/cache/archives/partial"
+  echo "deb-src http://deb.debian.org/debian bookworm main" >"$lists/sources.list"
+  local options=(-o "Dir::Etc::SourceList=$lists/sources.list" -o Dir::Etc::SourceParts=/dev/null
+    -o "Dir::State::Lists=$lists/lists" -o "Dir::Cache=$lists/cache" -o APT::Sandbox::User=)
+  apt-get "${options[@]}" -qq update
+  (cd "$work/sources" && apt-get "${options[@]}" -qq source "${sources[@]}")
+  touch "$work/sources/complete"
+}
+
+# configure FOLDER SOURCE TARGET OPTION…: for zig's TARGET, with the libraries for files of that target.
+configure() {
+  local folder="$1" source="$2" target="$3"
+  cmake -G Ninja -S "$source" -B "$folder" -DCMAKE_BUILD_TYPE=Release "-DCMAKE_TOOLCHAIN_FILE=$PWD/packaging/zig.cmake" \
+    "-DRASTRUM_ZIG=$(zig)" "-DRASTRUM_ZIG_TARGET=$target" "-DCMAKE_FIND_ROOT_PATH=$work/$target/prefix" \
+    -DCMAKE_{C,CXX}_COMPILER_LAUNCHER=ccache "-DCMAKE_INSTALL_PREFIX=$work/$target/prefix" "-DCMAKE_INSTALL_LIBDIR=$work/$target/prefix/lib" "${@:4}" >"$folder.log"
+}
+
+# library TARGET NAME SOURCE OPTION…: compiles and installs a library of others for TARGET, once.
+library() {
+  local folder="$work/$1/$2"
+  [[ -e $folder/complete ]] && return
+  mkdir -p "$work/$1"
+  configure "$folder" "$3" "$1" -DBUILD_SHARED_LIBS=OFF -DBUILD_TESTING=OFF -DCMAKE_POSITION_INDEPENDENT_CODE=ON \
+    -DCMAKE_{C,CXX}_VISIBILITY_PRESET=hidden -DCMAKE_POLICY_DEFAULT_CMP0063=NEW "${@:4}"
+  cmake --build "$folder" --target install >>"$folder.log"
+  touch "$folder/complete"
+}
+
+# The libraries that Rastrum needs.
+needed_libraries() {
+  library "$1" third packaging/third_parties "-DSOURCES=$work/sources"
+  library "$1" jpeg "$(echo "$work"/sources/libjpeg-turbo-*/)" -DENABLE_SHARED=OFF -DWITH_SIMD=OFF -DWITH_TURBOJPEG=OFF
+}
+
+# Those that it uses where they are. Draco is not there: it takes minutes.
+more_libraries() {
+  library "$1" webp "$(echo "$work"/sources/libwebp-*/)" \
+    -DWEBP_BUILD_{ANIM_UTILS,CWEBP,DWEBP,GIF2WEBP,IMG2WEBP,VWEBP,WEBPINFO,LIBWEBPMUX,WEBPMUX,EXTRAS}=OFF
+  library "$1" imath "$(echo "$work"/sources/imath-*/)"
+  library "$1" openexr "$(echo "$work"/sources/openexr-*/)" -DOPENEXR_BUILD_TOOLS=OFF -DOPENEXR_INSTALL_{EXAMPLES,TOOLS}=OFF
+  library "$1" muparser "$(echo "$work"/sources/muparser-*/)" -DENABLE_{SAMPLES,OPENMP}=OFF
+}
+
+# wheel PROCESSOR PYTHON FOLDER OPTION…: into FOLDER; OPTIONs are pip's.
+wheel() {
+  local target="$1-linux-gnu.2.17" environment name licences=()
+  environment="$(environment "$2")"
+  local options=(
+    "build-dir=$work/$target/build-$2"
+    "cmake.define.CMAKE_TOOLCHAIN_FILE=$PWD/packaging/zig.cmake"
+    "cmake.define.CMAKE_FIND_ROOT_PATH=$work/$target/prefix"
+    "cmake.define.RASTRUM_ZIG=$(zig)"
+    "cmake.define.RASTRUM_ZIG_TARGET=$target"
+    cmake.define.RASTRUM_TBB=OFF
+  )
+  rm -rf "$work/$target/wheel"
+  _PYTHON_HOST_PLATFORM="linux-$1" SETUPTOOLS_EXT_SUFFIX=".cpython-${2/./}-$1-linux-gnu.so" CMAKE_GENERATOR=Ninja \
+    "$environment/bin/pip" wheel . -q --no-deps --disable-pip-version-check --no-build-isolation -w "$work/$target/wheel" "${options[@]/#/-C}" "${@:4}"
+  for name in "${sources[@]}"; do licences+=("$name=$(echo "$work/sources/$name"-*/debian/copyright)"); done
+  licences+=("libc++=$(dirname "$(zig)")/lib/libcxx/LICENSE.TXT")
+  licences+=("nanobind=$(echo "$environment"/lib/python*/site-packages/nanobind-*/licenses/LICENSE)")
+  "$environment/bin/python" packaging/wheel_licences.py "$work/$target/wheel"/*.whl "${licences[@]}"
+  PATH="$environment/bin:$PATH" auditwheel repair --plat auto -w "$3" "$work/$target/wheel"/*.whl
+}
+
+make_wheels() {
+  local processor python
+  for processor in "${processors[@]}"; do
+    needed_libraries "$processor-linux-gnu.2.17"
+    more_libraries "$processor-linux-gnu.2.17"
+    for python in "${pythons[@]}"; do
+      python_of "$python" >/dev/null || { echo "note: there is no Python $python here, so no wheel for it"; continue; }
+      wheel "$processor" "$python" "$out"
+    done
+  done
+}
+
+make_programs() {
+  local processor target
+  for processor in "${processors[@]}"; do
+    target="$processor-linux-musl"
+    needed_libraries "$target"
+    more_libraries "$target"
+    configure "$work/$target/program" . "$target" -DRASTRUM_TBB=OFF -DRASTRUM_UNITY=ON -DRASTRUM_PYTHON=OFF \
+      -DRASTRUM_BUILD_TESTS=OFF -DRASTRUM_BUILD_EXAMPLES=OFF -DRASTRUM_BUILD_BENCH=OFF -DRASTRUM_INSTALL=OFF \
+      -DCMAKE_EXE_LINKER_FLAGS=-s
+    cmake --build "$work/$target/program" --target rastrum_program
+    cp "$work/$target/program/apps/rastrum/rastrum" "$out/rastrum-linux-$processor"
+  done
+}
+
+# The source package for Python, of the last commit. It is compiled without network and passes the test whose digests all
+# machines share.
+make_sdist() {
+  local environment folder="$work/sdist"
+  environment="$(tools)"
+  rm -rf "$folder"
+  mkdir -p "$folder"/{tree,unpacked}
+  git archive HEAD | tar -x -C "$folder/tree"
+  (cd "$folder/tree" && "$environment/bin/python" -c "import scikit_build_core.build as b; b.build_sdist('$out')" >"$folder/log")
+  tar -xf "$out/rastrum-$(version).tar.gz" -C "$folder/unpacked" --strip-components 1
+  "$environment/bin/python" -m venv --clear "$folder/try"
+  "$folder/try/bin/pip" install -q --disable-pip-version-check -r packaging/requirements.txt ninja numpy pytest
+  PATH="$folder/try/bin:$PATH" unshare -n "$folder/try/bin/pip" install -q --disable-pip-version-check --no-index \
+    --no-build-isolation "$out/rastrum-$(version).tar.gz"
+  (cd "$folder/unpacked" && unshare -n "$folder/try/bin/python" -m pytest -q -p no:cacheprovider python/tests/test_pictures.py)
+}
+
+# Which libraries the wheels and the programs contain, as CycloneDX.
+make_sbom() {
+  local environment
+  environment="$(tools)"
+  "$environment/bin/pip" install -q --disable-pip-version-check 'cyclonedx-python-lib[json-validation]>=11,<12'
+  "$environment/bin/python" packaging/sbom.py "$(version)" "$work/sources" "$out/rastrum-$(version).cdx.json"
+}
+
+# The programs as images for podman and its like, which hold nothing else but licences; the one for this processor is tried.
+make_image() {
+  local processor file library licence image folder="$work/image" when name
+  local -A architectures=([x86_64]=amd64 [aarch64]=arm64)
+  when="$(date -u -d "@$SOURCE_DATE_EPOCH" +%Y-%m-%dT%H:%M:%SZ)"
+  name="rastrum:$(version)"
+  rm -rf "$folder"
+  for processor in "${processors[@]}"; do
+    image="$folder/$processor/layout" file="$out/rastrum-image-$processor.tar"
+    mkdir -p "$folder/$processor/root/licences"
+    cp "$out/rastrum-linux-$processor" "$folder/$processor/root/rastrum"
+    while IFS='=' read -r library licence; do
+      cp "$licence" "$folder/$processor/root/licences/$library.txt"
+    done < <(program_licences)
+    find "$folder/$processor/root" -exec touch -d "@$SOURCE_DATE_EPOCH" {} +
+    umoci init --layout "$image"
+    umoci new --image "$image:new"
+    umoci insert --image "$image:new" --rootless --history.created "$when" --history.author rastrum \
+      --history.created_by packaging/release.sh "$folder/$processor/root" /
+    umoci config --image "$image:new" --no-history --created "$when" --os linux --architecture "${architectures[$processor]}" \
+      --config.entrypoint /rastrum --config.workingdir /work --config.label org.opencontainers.image.licenses=BSD-3-Clause
+    umoci gc --layout "$image"
+    sed -i "s/\"new\"/\"$name\"/" "$image/index.json"
+    tar -C "$image" --sort=name "--mtime=@$SOURCE_DATE_EPOCH" --owner=0 --group=0 --numeric-owner --mode=u=rwX,go=rX -cf "$file" .
+  done
+  # What containers want of a kernel is turned down, so that these run in a container, too.
+  local podman=(podman --cgroup-manager=cgroupfs --events-backend=file --storage-driver=vfs --root "$folder/podman"
+    --runroot "$folder/run" --runtime runc)
+  "${podman[@]}" load -q -i "$out/rastrum-image-$(uname -m).tar"
+  diff <(packaging/digests.sh "${podman[@]}" run -i --rm --network none --ulimit nofile=1024:1024 --ulimit nproc=1024:1024 \
+    "localhost/$name") packaging/digests.txt
+  # What the GitHub Action runs.
+  packaging/recipes/action/compare.sh "$out/rastrum-linux-$(uname -m)" \
+    <(sed 's/  \([^ ]*\) / builtin:\1 --look plain --size 320x240 /' packaging/digests.txt) "$folder/pictures"
+}
+
+# The licence of each library in the programs: NAME=FILE.
+program_licences() {
+  local name zig
+  zig="$(dirname "$(zig)")"
+  echo "rastrum=LICENSE"
+  echo "font=rastrum/overlay/font/LICENSE"
+  echo "colour_maps=rastrum/scene/color_maps/LICENSE"
+  for name in "${sources[@]}"; do echo "$name=$(echo "$work/sources/$name"-*/debian/copyright)"; done
+  for name in hwy nlohmann-json3 cli11; do echo "$name=$(echo /usr/share/doc/*"$name"-dev/copyright)"; done
+  echo "libc++=$zig/lib/libcxx/LICENSE.TXT"
+  echo "musl=$zig/lib/libc/musl/COPYRIGHT"
+  echo "zig=$zig/LICENSE"
+}
+
+version() { sed -n 's/^#define RASTRUM_VERSION_.* //p' include/rastrum/version.hpp | paste -sd.; }
+
+# Debian's packages for this Debian, of the last commit: the library is compiled by its g++.
+make_deb() {
+  local folder="$work/deb" tree
+  tree="$folder/rastrum-$(version)"
+  rm -rf "$folder"
+  mkdir -p "$tree"
+  git archive HEAD | tar -x -C "$tree"
+  cp -r packaging/debian "$tree/debian"
+  (
+    cd "$tree"
+    printf 'rastrum (%s-1) bookworm; urgency=medium\n\n  * What is new: changelog.gz.\n\n -- %s  %s\n' "$(version)" \
+      "$(sed -n 's/^Maintainer: //p' debian/control)" "$(date -u -R -d "@$SOURCE_DATE_EPOCH")" >debian/changelog
+    {
+      cat LICENSE
+      printf '\nThe font that the library contains:\n\n'
+      cat rastrum/overlay/font/LICENSE
+      printf '\nThe colour maps that it contains:\n\n'
+      cat rastrum/scene/color_maps/LICENSE
+      printf '\nOn Debian these two licences are in /usr/share/common-licenses/Apache-2.0 and .../CC0-1.0.\n'
+    } >debian/copyright
+    dpkg-buildpackage -b -us -uc
+  ) >"$work/deb.log" 2>&1 || { tail -n 40 "$work/deb.log" >&2; return 1; }
+  lintian --fail-on error,warning "$folder"/*.changes
+  cp "$folder"/*rastrum*_*.deb "$out"
+  try_deb "$folder/root"
+}
+
+# try_deb ROOT: in a Debian that has nothing else, the program draws, and the library's users are built.
+try_deb() {
+  local root="$1" inside=(chroot "$1" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive)
+  mmdebstrap --quiet --variant=minbase bookworm "$root"
+  cp /etc/resolv.conf "$root/etc/resolv.conf"
+  cp "$out"/*_"$(version)"-1_*.deb "$root/tmp"
+  cp -r tests/install/user "$root/tmp/user"
+  "${inside[@]}" sh -c 'apt-get -qq install -y --no-install-recommends /tmp/rastrum_*.deb' >"$work/deb_try.log"
+  diff <(packaging/digests.sh "${inside[@]}" rastrum) packaging/digests.txt
+  "${inside[@]}" sh -ec 'apt-get -qq install -y --no-install-recommends /tmp/librastrum-dev_*.deb g++ cmake make pkgconf
+    cmake -S /tmp/user -B /tmp/built -DCMAKE_BUILD_TYPE=Release && cmake --build /tmp/built && cd /tmp/built && ./core && ./io && ./family
+    g++ -std=c++20 /tmp/user/core.cpp -o core-pc $(pkg-config --cflags --libs rastrum) && ./core-pc' >>"$work/deb_try.log"
+  tail -n 1 "$work/deb_try.log"
+}
+
+# inside ROOT PROCESSOR COMMAND…: runs a command where there is nothing but ROOT, and no network.
+inside() {
+  local emulator=()
+  if [[ $2 != "$(uname -m)" ]]; then
+    cp "/usr/bin/qemu-$2-static" "$1"
+    emulator=("/qemu-$2-static")
+  fi
+  unshare -n env -i "PATH=$PATH" HOME=/ PYTHONPATH=/site PYTHONDONTWRITEBYTECODE=1 chroot "$1" "${emulator[@]}" "${@:3}"
+}
+
+# shapes FOLDER PROGRAM: what digests.py reads.
+shapes() {
+  local shape
+  mkdir -p "$1"
+  while read -r _ shape _; do
+    [[ -e $1/$shape.ply ]] || "$2" make "$shape" --quiet -o "$1/$shape.ply"
+  done <packaging/digests.txt
+}
+
+# try_wheel RELEASE PROCESSOR PACKAGE…: a wheel and its PACKAGEs from PyPI, beside the Python of a Debian that has nothing else,
+# draw the pictures of digests.txt. NumPy wants libstdc++. Prints the root's folder.
+try_wheel() {
+  local root="$work/root-$1-$2" python environment
+  local -A architectures=([x86_64]=amd64 [aarch64]=arm64)
+  [[ -e $root/usr/bin/python3 ]] || mmdebstrap --quiet --variant=extract --skip=check/qemu \
+    "--architectures=${architectures[$2]}" --include=python3,libstdc++6 "$1" "$root" >&2
+  python="$(basename "$(readlink "$root/usr/bin/python3")")"
+  environment="$(tools)"
+  rm -rf "$root"/{site,shapes}
+  shapes "$root/shapes" "$out/rastrum-linux-$(uname -m)"
+  cp packaging/digests.{py,txt} "$root"
+  "$environment/bin/pip" install -q --disable-pip-version-check --target "$root/site" --only-binary :all: \
+    --python-version "${python#python}" --platform "manylinux2014_$2" --platform "manylinux_2_27_$2" --platform "manylinux_2_28_$2" \
+    --find-links "$out" "rastrum==$(version)" "${@:3}" >&2
+  diff <(inside "$root" "$2" "/usr/bin/$python" /digests.py /digests.txt /shapes) packaging/digests.txt >&2
+  inside "$root" "$2" "/usr/bin/$python" -c "
+import numpy, time
+start = time.perf_counter()
+import rastrum
+print(f'Debian $1, $2, $python: the digests are equal; import rastrum took {time.perf_counter() - start:.3f} s')" >&2
+  echo "$root"
+}
+
+# Each program, alone in an empty folder, draws the pictures of digests.txt. So does the wheel where Debian has a Python for
+# it. Each wheel of this processor passes the package's tests, and that for AArch64 those of pictures.
+make_try() {
+  local processor python root folder="$work/try"
+  for processor in "${processors[@]}"; do
+    echo "rastrum-linux-$processor"
+    rm -rf "$folder"
+    mkdir -p "$folder"
+    cp "$out/rastrum-linux-$processor" "$folder/rastrum"
+    diff <(packaging/digests.sh inside "$folder" "$processor" /rastrum) packaging/digests.txt
+  done
+  try_wheel trixie x86_64 >/dev/null
+  try_wheel bookworm x86_64 >/dev/null
+  root="$(try_wheel bookworm aarch64 pytest pillow)"
+  cp -r python/tests tests "$root"
+  inside "$root" aarch64 /usr/bin/python3 -m pytest -q -p no:cacheprovider /python/tests/test_pictures.py
+  for python in "${pythons[@]}" 3.13; do
+    python_of "$python" >/dev/null || { echo "note: there is no Python $python here"; continue; }
+    echo "Python $python"
+    "$(python_of "$python")" -m venv --clear "$folder"
+    "$folder/bin/pip" install -q --disable-pip-version-check numpy pytest pillow trimesh
+    "$folder/bin/pip" install -q --disable-pip-version-check --no-index --find-links "$out" rastrum
+    (cd /tmp && "$folder/bin/python" -m pytest -q -p no:cacheprovider "$OLDPWD/python/tests")
+  done
+}
+
+# What CI does each day: a wheel for this Debian's Python, with the libraries that are needed and little optimised, draws the
+# pictures of digests.txt.
+make_daily() {
+  local folder="$work/daily"
+  rm -rf "$folder"
+  needed_libraries "$(uname -m)-linux-gnu.2.17"
+  wheel "$(uname -m)" 3.11 "$folder" "-Ccmake.define.CMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG -DRASTRUM_ONE_SIMD_TARGET"
+  shapes "$folder/shapes" build/release/apps/rastrum/rastrum
+  "$(python_of 3.11)" -m venv "$folder/python"
+  "$folder/python/bin/pip" install -q --disable-pip-version-check "$folder"/*.whl
+  diff <("$folder/python/bin/python" packaging/digests.py packaging/digests.txt "$folder/shapes") packaging/digests.txt
+}
+
+main() {
+  SOURCE_DATE_EPOCH="$(git log -1 --format=%ct)"
+  export SOURCE_DATE_EPOCH
+  mkdir -p "$work" "$out"
+  fetch_sources
+  local part parts=("$@")
+  ((${#parts[@]})) || parts=(wheels programs try sdist deb image sbom)
+  for part in "${parts[@]}"; do
+    case "$part" in
+      wheels | programs | try | sdist | deb | image | sbom) "make_$part" ;;
+      daily) make_daily; exit ;;
+      *) echo "release: there is no part '$part'; the parts are wheels, programs, try, sdist, deb, image, sbom" >&2; exit 2 ;;
+    esac
+  done
+  (cd "$out" && rm -f SHA256SUMS && sha256sum -- * >"$work/sums" && mv "$work/sums" SHA256SUMS && ls -l)
+}
+main "$@"

@@ -1,0 +1,35 @@
+# Compiles by zig's clang (PyPI's ziglang) with its own C++ library, for old systems and for other processors:
+#   cmake -DCMAKE_TOOLCHAIN_FILE=packaging/zig.cmake -DRASTRUM_ZIG=…/ziglang/zig -DRASTRUM_ZIG_TARGET=aarch64-linux-gnu.2.17
+# CMake and ccache want a compiler to be one program, so each of zig's tools gets a script in build/zig.
+list(APPEND CMAKE_TRY_COMPILE_PLATFORM_VARIABLES RASTRUM_ZIG RASTRUM_ZIG_TARGET)
+if(NOT RASTRUM_ZIG OR NOT RASTRUM_ZIG_TARGET)
+  message(FATAL_ERROR "zig.cmake: give -DRASTRUM_ZIG=PROGRAM and -DRASTRUM_ZIG_TARGET=PROCESSOR-SYSTEM-LIBC")
+endif()
+string(REGEX MATCH "^[^-]+" CMAKE_SYSTEM_PROCESSOR ${RASTRUM_ZIG_TARGET})
+set(CMAKE_SYSTEM_NAME Linux)
+# The build runs some of its own programs.
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL CMAKE_HOST_SYSTEM_PROCESSOR)
+  set(CMAKE_CROSSCOMPILING_EMULATOR env)
+else()
+  set(CMAKE_CROSSCOMPILING_EMULATOR qemu-${CMAKE_SYSTEM_PROCESSOR}-static;-L;/usr/${CMAKE_SYSTEM_PROCESSOR}-linux-gnu)
+endif()
+
+get_filename_component(zig_tools ${CMAKE_CURRENT_LIST_DIR}/../build/zig/${RASTRUM_ZIG_TARGET} ABSOLUTE)
+foreach(tool cc c++ ar ranlib)
+  set(options "")
+  if(tool MATCHES "^c")
+    set(options "-target ${RASTRUM_ZIG_TARGET}")
+  endif()
+  set(script ${zig_tools}/${tool})
+  if(NOT EXISTS ${script})
+    file(WRITE ${script} "#!/bin/sh\nexec '${RASTRUM_ZIG}' ${tool} ${options} \"$@\"\n")
+    file(CHMOD ${script} PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+  endif()
+endforeach()
+set(CMAKE_C_COMPILER ${zig_tools}/cc)
+set(CMAKE_CXX_COMPILER ${zig_tools}/c++)
+set(CMAKE_AR ${zig_tools}/ar CACHE FILEPATH "")
+set(CMAKE_RANLIB ${zig_tools}/ranlib CACHE FILEPATH "")
+# Libraries of the machine that compiles are for another system.
+set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
+set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
