@@ -72,7 +72,7 @@ fetch_sources() {
 # configure FOLDER SOURCE TARGET OPTION…: for zig's TARGET, with the libraries for files of that target.
 configure() {
   local folder="$1" source="$2" target="$3"
-  cmake -G Ninja -S "$source" -B "$folder" -DCMAKE_BUILD_TYPE=Release "-DCMAKE_TOOLCHAIN_FILE=$PWD/packaging/zig.cmake" \
+  cmake --no-warn-unused-cli -G Ninja -S "$source" -B "$folder" -DCMAKE_BUILD_TYPE=Release "-DCMAKE_TOOLCHAIN_FILE=$PWD/packaging/zig.cmake" \
     "-DRASTRUM_ZIG=$(zig)" "-DRASTRUM_ZIG_TARGET=$target" "-DCMAKE_FIND_ROOT_PATH=$work/$target/prefix" \
     -DCMAKE_{C,CXX}_COMPILER_LAUNCHER=ccache "-DCMAKE_INSTALL_PREFIX=$work/$target/prefix" "-DCMAKE_INSTALL_LIBDIR=$work/$target/prefix/lib" "${@:4}" >"$folder.log"
 }
