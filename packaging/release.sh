@@ -178,23 +178,26 @@ make_sbom() {
 
 # The programs as images for podman and its like, which hold nothing else but licences; the one for this processor is tried.
 make_image() {
-  local processor file library licence image folder="$work/image" when name
+  local processor file library licence image root folder="$work/image" when name
   local -A architectures=([x86_64]=amd64 [aarch64]=arm64)
   when="$(date -u -d "@$SOURCE_DATE_EPOCH" +%Y-%m-%dT%H:%M:%SZ)"
   name="rastrum:$(version)"
   rm -rf "$folder"
   for processor in "${processors[@]}"; do
-    image="$folder/$processor/layout" file="$out/rastrum-image-$processor.tar"
-    mkdir -p "$folder/$processor/root/licences"
-    cp "$out/rastrum-linux-$processor" "$folder/$processor/root/rastrum"
-    while IFS='=' read -r library licence; do
-      cp "$licence" "$folder/$processor/root/licences/$library.txt"
-    done < <(program_licences)
-    find "$folder/$processor/root" -exec touch -d "@$SOURCE_DATE_EPOCH" {} +
+    image="$folder/$processor/layout" root="$folder/$processor/bundle/rootfs" file="$out/rastrum-image-$processor.tar"
+    mkdir -p "$folder/$processor"
     umoci init --layout "$image"
     umoci new --image "$image:new"
-    umoci insert --image "$image:new" --rootless --history.created "$when" --history.author rastrum \
-      --history.created_by packaging/release.sh "$folder/$processor/root" /
+    umoci unpack --rootless --image "$image:new" "$folder/$processor/bundle"
+    mkdir "$root/licences"
+    cp "$out/rastrum-linux-$processor" "$root/rastrum"
+    while IFS='=' read -r library licence; do
+      cp "$licence" "$root/licences/$library.txt"
+    done < <(program_licences)
+    find "$root" -exec touch -d "@$SOURCE_DATE_EPOCH" {} +
+    # `umoci insert` would do in one step, and leaves out the end of the layer's archive, which tar misses.
+    umoci repack --image "$image:new" --history.created "$when" --history.author rastrum --history.created_by packaging/release.sh \
+      "$folder/$processor/bundle"
     umoci config --image "$image:new" --no-history --created "$when" --os linux --architecture "${architectures[$processor]}" \
       --config.entrypoint /rastrum --config.workingdir /work --config.label org.opencontainers.image.licenses=BSD-3-Clause
     umoci gc --layout "$image"
