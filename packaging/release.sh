@@ -173,7 +173,7 @@ make_sbom() {
   local environment
   environment="$(tools)"
   "$environment/bin/pip" install -q --disable-pip-version-check 'cyclonedx-python-lib[json-validation]>=11,<12'
-  "$environment/bin/python" packaging/sbom.py "$(version)" "$work/sources" "$out/rastrum-$(version).cdx.json"
+  "$environment/bin/python" packaging/sbom.py "$(version)" "$out/rastrum-$(version).cdx.json" "$work/sources" "${sources[@]}"
 }
 
 # The programs as images for podman and its like, which hold nothing else but licences; the one for this processor is tried.

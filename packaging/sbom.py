@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes which libraries the wheels and the programs contain, as CycloneDX, and validates that.
 
-usage: sbom.py VERSION SOURCES OUTPUT     SOURCES is the folder of Debian's source packages
+usage: sbom.py VERSION OUTPUT SOURCES NAME…     SOURCES is the folder of Debian's source packages; those called NAME count
 
 It runs in the environment that builds wheels, whose zig and nanobind it names. The date is SOURCE_DATE_EPOCH.
 """
@@ -40,10 +40,11 @@ def debian(name, version, licence, **qualifiers):
     return component(name, version, licence, PackageURL("deb", "debian", name, version, {"distro": "bookworm", **qualifiers}))
 
 
-def of_sources(folder):
-    for file in sorted(pathlib.Path(folder).glob("*.dsc")):
-        fields = dict(re.findall(r"^(Source|Version): (\S+)", file.read_text(), re.M))
-        yield debian(fields["Source"], fields["Version"], LICENCES[fields["Source"]], arch="source")
+def of_sources(folder, names):
+    for name in names:
+        file, = pathlib.Path(folder).glob(f"{name}_*.dsc")
+        version = re.search(r"^Version: (\S+)", file.read_text(), re.M).group(1)
+        yield debian(name, version, LICENCES[name], arch="source")
 
 
 def of_headers(packages):
@@ -64,14 +65,14 @@ def inside(file, pattern):
     return re.findall(pattern, text)
 
 
-def bill(version, sources):
+def bill(version, sources, names):
     zig = python("ziglang", "MIT")  # the build's own functions, compiler_rt, are zig's
     llvm = inside("ziglang/lib/libcxx/include/__config", r"define _LIBCPP_VERSION (\d\d)(\d\d)(\d\d)")[0]
     cxx = component("libc++", ".".join(str(int(number)) for number in llvm), "Apache-2.0 WITH LLVM-exception",
                     PackageURL("github", "llvm", "llvm-project", "llvmorg-" + ".".join(str(int(number)) for number in llvm)))
     musl, = inside("ziglang/lib/libc/musl/src/internal/version.h", r'VERSION "(.*)"')
     robin_map = ".".join(inside("nanobind/ext/robin_map/include/tsl/robin_growth_policy.h", r"define TSL_RH_VERSION_\w+ (\d+)"))
-    both = [*of_sources(sources), *of_headers(HEADERS), cxx, zig,
+    both = [*of_sources(sources, names), *of_headers(HEADERS), cxx, zig,
             component("DejaVu Sans", "2.37", "Bitstream-Vera", None, ComponentType.DATA),
             component("colour maps", version, "Apache-2.0 AND CC0-1.0", None, ComponentType.DATA)]
     wheels = [python("nanobind", "BSD-3-Clause"),
@@ -94,10 +95,10 @@ def bill(version, sources):
 
 
 def main():
-    if len(sys.argv) != 4:
+    if len(sys.argv) < 5:
         raise SystemExit(__doc__)
-    version, sources, output = sys.argv[1:]
-    text = JsonV1Dot6(bill(version, sources)).output_as_string(indent=2)
+    version, output, sources, *names = sys.argv[1:]
+    text = JsonV1Dot6(bill(version, sources, names)).output_as_string(indent=2)
     problem = JsonStrictValidator(SchemaVersion.V1_6).validate_str(text)
     if problem:
         raise SystemExit(f"sbom.py: {problem}")
