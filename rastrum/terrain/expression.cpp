@@ -6,6 +6,7 @@
 // neither has the same bits everywhere.
 #include <rastrum/terrain_light.hpp>
 
+#include <rastrum/core/float_scope.hpp>
 #include <rastrum/core/number_text.hpp>
 #include <rastrum/core/reject.hpp>
 #include <rastrum/error.hpp>
@@ -18,7 +19,6 @@
 #include <memory>
 
 #include <rastrum/core/elementary.hpp>
-#include <rastrum/core/float_scope.hpp>
 #include <rastrum/parallel/scratch.hpp>
 #endif
 
