@@ -20,7 +20,9 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 readonly work="$PWD/build/packages" out="$PWD/out/release" zig_version=0.17.0
 readonly processors=(x86_64 aarch64)
-readonly sources=(zlib libpng1.6 libdeflate libjpeg-turbo meshoptimizer libwebp imath openexr muparser)
+# Debian's source packages: those that all packages contain, and those that the programs contain besides. Draco is not there,
+# because it takes minutes, nor what is loaded by its name when a file asks for it (libwebp, GDAL).
+readonly sources=(zlib libpng1.6 libdeflate libjpeg-turbo meshoptimizer) program_sources=(imath openexr muparser)
 # The wheel for 3.12 serves all later Pythons.
 readonly pythons=(3.10 3.11 3.12)
 
@@ -65,7 +67,7 @@ fetch_sources() {
   local options=(-o "Dir::Etc::SourceList=$lists/sources.list" -o Dir::Etc::SourceParts=/dev/null
     -o "Dir::State::Lists=$lists/lists" -o "Dir::Cache=$lists/cache" -o APT::Sandbox::User=)
   apt-get "${options[@]}" -qq update
-  (cd "$work/sources" && apt-get "${options[@]}" -qq source "${sources[@]}")
+  (cd "$work/sources" && apt-get "${options[@]}" -qq source "${sources[@]}" "${program_sources[@]}")
   touch "$work/sources/complete"
 }
 
@@ -94,10 +96,8 @@ needed_libraries() {
   library "$1" jpeg "$(echo "$work"/sources/libjpeg-turbo-*/)" -DENABLE_SHARED=OFF -DWITH_SIMD=OFF -DWITH_TURBOJPEG=OFF
 }
 
-# Those that it uses where they are. Draco is not there: it takes minutes.
-more_libraries() {
-  library "$1" webp "$(echo "$work"/sources/libwebp-*/)" \
-    -DWEBP_BUILD_{ANIM_UTILS,CWEBP,DWEBP,GIF2WEBP,IMG2WEBP,VWEBP,WEBPINFO,LIBWEBPMUX,WEBPMUX,EXTRAS}=OFF
+# Those that the programs use besides; pyproject.toml leaves them out of wheels.
+program_libraries() {
   library "$1" imath "$(echo "$work"/sources/imath-*/)"
   library "$1" openexr "$(echo "$work"/sources/openexr-*/)" -DOPENEXR_BUILD_TOOLS=OFF -DOPENEXR_INSTALL_{EXAMPLES,TOOLS}=OFF
   library "$1" muparser "$(echo "$work"/sources/muparser-*/)" -DENABLE_{SAMPLES,OPENMP}=OFF
@@ -129,7 +129,6 @@ make_wheels() {
   local processor python
   for processor in "${processors[@]}"; do
     needed_libraries "$processor-linux-gnu.2.17"
-    more_libraries "$processor-linux-gnu.2.17"
     for python in "${pythons[@]}"; do
       python_of "$python" >/dev/null || { echo "note: there is no Python $python here, so no wheel for it"; continue; }
       wheel "$processor" "$python" "$out"
@@ -142,7 +141,7 @@ make_programs() {
   for processor in "${processors[@]}"; do
     target="$processor-linux-musl"
     needed_libraries "$target"
-    more_libraries "$target"
+    program_libraries "$target"
     configure "$work/$target/program" . "$target" -DRASTRUM_TBB=OFF -DRASTRUM_UNITY=ON -DRASTRUM_PYTHON=OFF \
       -DRASTRUM_BUILD_TESTS=OFF -DRASTRUM_BUILD_EXAMPLES=OFF -DRASTRUM_BUILD_BENCH=OFF -DRASTRUM_INSTALL=OFF \
       -DCMAKE_EXE_LINKER_FLAGS=-s
@@ -173,7 +172,7 @@ make_sbom() {
   local environment
   environment="$(tools)"
   "$environment/bin/pip" install -q --disable-pip-version-check 'cyclonedx-python-lib[json-validation]>=11,<12'
-  "$environment/bin/python" packaging/sbom.py "$(version)" "$out/rastrum-$(version).cdx.json" "$work/sources" "${sources[@]}"
+  "$environment/bin/python" packaging/sbom.py "$(version)" "$out/rastrum-$(version).cdx.json" "$work/sources" "${sources[@]}" -- "${program_sources[@]}"
 }
 
 # The programs as images for podman and its like, which hold nothing else but licences; the one for this processor is tried.
@@ -222,7 +221,7 @@ program_licences() {
   echo "rastrum=LICENSE"
   echo "font=rastrum/overlay/font/LICENSE"
   echo "colour_maps=rastrum/scene/color_maps/LICENSE"
-  for name in "${sources[@]}"; do echo "$name=$(echo "$work/sources/$name"-*/debian/copyright)"; done
+  for name in "${sources[@]}" "${program_sources[@]}"; do echo "$name=$(echo "$work/sources/$name"-*/debian/copyright)"; done
   for name in hwy nlohmann-json3 cli11; do echo "$name=$(echo /usr/share/doc/*"$name"-dev/copyright)"; done
   echo "libc++=$zig/lib/libcxx/LICENSE.TXT"
   echo "musl=$zig/lib/libc/musl/COPYRIGHT"

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes which libraries the wheels and the programs contain, as CycloneDX, and validates that.
 
-usage: sbom.py VERSION OUTPUT SOURCES NAME…     SOURCES is the folder of Debian's source packages; those called NAME count
+usage: sbom.py VERSION OUTPUT SOURCES NAME… -- NAME…     SOURCES is the folder of Debian's source packages: those in wheels and
+                                                         programs, and those in programs alone
 
 It runs in the environment that builds wheels, whose zig and nanobind it names. The date is SOURCE_DATE_EPOCH.
 """
@@ -25,8 +26,8 @@ from packageurl import PackageURL
 
 # The licences of Debian's source packages, and of its packages of headers.
 LICENCES = {
-    "draco": "Apache-2.0", "imath": "BSD-3-Clause", "libdeflate": "MIT", "libjpeg-turbo": "IJG AND BSD-3-Clause AND Zlib",
-    "libpng1.6": "libpng-2.0", "libwebp": "BSD-3-Clause", "meshoptimizer": "MIT", "muparser": "BSD-2-Clause",
+    "imath": "BSD-3-Clause", "libdeflate": "MIT", "libjpeg-turbo": "IJG AND BSD-3-Clause AND Zlib",
+    "libpng1.6": "libpng-2.0", "meshoptimizer": "MIT", "muparser": "BSD-2-Clause",
     "openexr": "BSD-3-Clause", "zlib": "Zlib"}
 HEADERS = {"libhwy-dev": "Apache-2.0", "nlohmann-json3-dev": "MIT"}
 PROGRAM_HEADERS = {"libcli11-dev": "BSD-3-Clause"}
@@ -65,7 +66,7 @@ def inside(file, pattern):
     return re.findall(pattern, text)
 
 
-def bill(version, sources, names):
+def bill(version, sources, names, program_names):
     zig = python("ziglang", "MIT")  # the build's own functions, compiler_rt, are zig's
     llvm = inside("ziglang/lib/libcxx/include/__config", r"define _LIBCPP_VERSION (\d\d)(\d\d)(\d\d)")[0]
     cxx = component("libc++", ".".join(str(int(number)) for number in llvm), "Apache-2.0 WITH LLVM-exception",
@@ -77,7 +78,7 @@ def bill(version, sources, names):
             component("colour maps", version, "Apache-2.0 AND CC0-1.0", None, ComponentType.DATA)]
     wheels = [python("nanobind", "BSD-3-Clause"),
               component("robin-map", robin_map, "MIT", PackageURL("github", "tessil", "robin-map", f"v{robin_map}"))]
-    programs = [*of_headers(PROGRAM_HEADERS), component("musl", musl, "MIT", PackageURL("generic", None, "musl", musl))]
+    programs = [*of_sources(sources, program_names), *of_headers(PROGRAM_HEADERS), component("musl", musl, "MIT", PackageURL("generic", None, "musl", musl))]
 
     def of_rastrum(name, kind):
         return component(name, version, "BSD-3-Clause", None, kind)
@@ -98,7 +99,8 @@ def main():
     if len(sys.argv) < 5:
         raise SystemExit(__doc__)
     version, output, sources, *names = sys.argv[1:]
-    text = JsonV1Dot6(bill(version, sources, names)).output_as_string(indent=2)
+    end = names.index("--")
+    text = JsonV1Dot6(bill(version, sources, names[:end], names[end + 1:])).output_as_string(indent=2)
     problem = JsonStrictValidator(SchemaVersion.V1_6).validate_str(text)
     if problem:
         raise SystemExit(f"sbom.py: {problem}")
