@@ -30,6 +30,11 @@ if(RASTRUM_SANITIZE)
   target_compile_definitions(rastrum_flags INTERFACE RASTRUM_ONE_SIMD_TARGET)
 endif()
 
+# Only ELF has it. clang warns of it elsewhere.
+if(NOT WIN32 AND NOT APPLE)
+  set(no_interposition -fno-semantic-interposition)
+endif()
+
 # rastrum_library(TARGET NAME): one of the installed libraries, Rastrum::NAME. Device and Python modules
 # contain a copy of it, so its code is position-independent and compiled only once. Functions cannot be
 # replaced at run time, so the compiler may inline them. A section for each function lets linkers drop unused
@@ -38,7 +43,7 @@ function(rastrum_library target name)
   add_library(Rastrum::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
   target_compile_options(${target} PRIVATE
-    "$<$<COMPILE_LANGUAGE:CXX>:-fno-semantic-interposition;-ffunction-sections;-fdata-sections>")
+    "$<$<COMPILE_LANGUAGE:CXX>:${no_interposition};-ffunction-sections;-fdata-sections>")
   target_include_directories(${target} SYSTEM PRIVATE $<TARGET_PROPERTY:hwy::hwy,INTERFACE_INCLUDE_DIRECTORIES>)
   target_compile_definitions(${target} PRIVATE HWY_IS_DEBUG_BUILD=0)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:rastrum_flags>)

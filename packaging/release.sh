@@ -4,8 +4,8 @@
 #
 # usage: packaging/release.sh [PART…]     (all parts without a PART)
 #   wheels    Python's, for x86-64 and AArch64 with glibc 2.17 or later
-#   programs  `rastrum` as one static file, for both
-#   try       both, where they have nothing else (root; qemu-user-static for AArch64)
+#   programs  `rastrum` as one static file, for both; for Windows; for macOS, where nobody has run it
+#   try       all but that, where they have nothing else (root; qemu-user-static for AArch64; wine64)
 #   sdist     the source package for Python, built and tried without network
 #   deb       Debian's packages, tried in a Debian that has nothing else (root, mmdebstrap)
 #   image     the programs as images of containers (umoci), tried by podman
@@ -136,18 +136,26 @@ make_wheels() {
   done
 }
 
+# program TARGET NAME [SUFFIX]: NAME in $out; SUFFIX is what the system adds to a program's name.
+program() {
+  configure "$work/$1/program" . "$1" -DRASTRUM_TBB=OFF -DRASTRUM_UNITY=ON -DRASTRUM_PYTHON=OFF \
+    -DRASTRUM_BUILD_TESTS=OFF -DRASTRUM_BUILD_EXAMPLES=OFF -DRASTRUM_BUILD_BENCH=OFF -DRASTRUM_INSTALL=OFF \
+    -DCMAKE_EXE_LINKER_FLAGS=-s
+  cmake --build "$work/$1/program" --target rastrum_program
+  cp "$work/$1/program/apps/rastrum/rastrum${3:-}" "$out/$2"
+}
+
 make_programs() {
   local processor target
   for processor in "${processors[@]}"; do
     target="$processor-linux-musl"
     needed_libraries "$target"
     program_libraries "$target"
-    configure "$work/$target/program" . "$target" -DRASTRUM_TBB=OFF -DRASTRUM_UNITY=ON -DRASTRUM_PYTHON=OFF \
-      -DRASTRUM_BUILD_TESTS=OFF -DRASTRUM_BUILD_EXAMPLES=OFF -DRASTRUM_BUILD_BENCH=OFF -DRASTRUM_INSTALL=OFF \
-      -DCMAKE_EXE_LINKER_FLAGS=-s
-    cmake --build "$work/$target/program" --target rastrum_program
-    cp "$work/$target/program/apps/rastrum/rastrum" "$out/rastrum-linux-$processor"
+    program "$target" "rastrum-linux-$processor"
   done
+  for target in x86_64-windows-gnu aarch64-macos; do needed_libraries "$target"; done
+  program x86_64-windows-gnu rastrum-windows-x86_64.exe .exe
+  program aarch64-macos rastrum-macos-arm64
 }
 
 # The source package for Python, of the last commit. It is compiled without network and passes the test whose digests all
@@ -327,6 +335,9 @@ make_try() {
     cp "$out/rastrum-linux-$processor" "$folder/rastrum"
     diff <(packaging/digests.sh inside "$folder" "$processor" /rastrum) packaging/digests.txt
   done
+  echo rastrum-windows-x86_64.exe
+  diff <(WINEDEBUG=-all WINEPREFIX="$work/wine" packaging/digests.sh /usr/lib/wine/wine64 "$out/rastrum-windows-x86_64.exe") \
+    packaging/digests.txt
   try_wheel trixie x86_64 >/dev/null
   try_wheel bookworm x86_64 >/dev/null
   root="$(try_wheel bookworm aarch64 pytest pillow)"

@@ -21,6 +21,7 @@
 #include <rastrum/version.hpp>
 
 #include "commands.hpp"
+#include "job/system.hpp"
 #include "mpi_start.hpp"
 #include "parse/arguments.hpp"
 #include "signals.hpp"
@@ -68,6 +69,7 @@ int flushed(int status) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  rastrum::cli::prepare_terminal();
   rastrum::cli::end_cleanly_on_signals();
   rastrum::io::remember_files_read();
   rastrum::cli::Parser app("rastrum", "Rastrum draws triangle meshes and terrains in software.");

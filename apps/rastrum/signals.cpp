@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A signal handler may call little and take no lock, so it only wakes a thread.
+// A signal handler may call little and take no lock, so it only wakes a thread, by a pipe: macOS
+// has no nameless semaphores.
 #include "signals.hpp"
 
-#include <semaphore.h>
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -17,17 +18,18 @@ namespace {
 
 std::atomic<int> came{0};
 static_assert(std::atomic<int>::is_always_lock_free);
-sem_t arrived;
+int wake[2] = {-1, -1};
 
 void on_signal(int number) {
   const int error = errno;
   int none = 0;
-  if (came.compare_exchange_strong(none, number)) ::sem_post(&arrived);
+  if (came.compare_exchange_strong(none, number)) static_cast<void>(::write(wake[1], "", 1) == 1);
   errno = error;
 }
 
 void wait_and_end() {
-  while (::sem_wait(&arrived) != 0) {
+  char byte = 0;
+  while (::read(wake[0], &byte, 1) != 1) {
   }
   io::abandon_files();
   struct sigaction as_ever = {};
@@ -39,7 +41,8 @@ void wait_and_end() {
 }  // namespace
 
 void end_cleanly_on_signals() {
-  ::sem_init(&arrived, 0, 0);
+  if (::pipe(wake) != 0) return;
+  for (const int end : wake) ::fcntl(end, F_SETFD, FD_CLOEXEC);
   std::thread(wait_and_end).detach();
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
     struct sigaction action = {};

@@ -23,12 +23,31 @@ class PathView {
     { path.native() } -> std::same_as<const std::string&>;
   }
   PathView(const Path& path) : text_(path.native()) {}
+#if defined(_WIN32)
+  // Paths are UTF-16 there. Text is in the process's code page, as all that <filesystem> gets.
+  template <class Path>
+  requires requires(const Path& path) {
+    { path.native() } -> std::same_as<const std::wstring&>;
+  }
+  PathView(const Path& path) : narrow_(path.string()) {}
+
+  [[nodiscard]] std::string_view text() const {
+    return narrow_.empty() ? text_ : narrow_;
+  }
+
+ private:
+  std::string narrow_;
+  std::string_view text_;
+#else
 
   /// The name as it was given; a zero byte need not follow it.
-  [[nodiscard]] std::string_view text() const { return text_; }
+  [[nodiscard]] std::string_view text() const {
+    return text_;
+  }
 
  private:
   std::string_view text_;
+#endif
 };
 
 }  // namespace rastrum

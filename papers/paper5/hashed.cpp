@@ -104,8 +104,9 @@ class Table {
   void for_runs(parallel::Threads* exec, const F& f) {
     constexpr std::size_t kRun = 16384;
     if (exec == nullptr) return f(0, slots_);
-    parallel::for_each_index(*exec, (slots_ + kRun - 1) / kRun,
-                             [&](std::size_t i) { f(i * kRun, std::min(slots_, (i + 1) * kRun)); });
+    parallel::for_each_index(*exec, (slots_ + kRun - 1) / kRun, [&](std::size_t i) {
+      f(i * kRun, std::min<std::uint64_t>(slots_, (i + 1) * kRun));
+    });
   }
 
   ScratchBuffer<std::uint32_t> pixels_;

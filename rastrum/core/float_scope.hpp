@@ -19,7 +19,8 @@ class FloatScope {
   FloatScope& operator=(const FloatScope&) = delete;
 
  private:
-  std::uint64_t callers_control_, callers_flags_;
+  std::uint64_t callers_control_;
+  [[maybe_unused]] std::uint64_t callers_flags_;  ///< not on every processor
 };
 
 }  // namespace rastrum

@@ -6,7 +6,6 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <limits>
 #include <memory>
 #include <span>
@@ -14,6 +13,7 @@
 #include <type_traits>
 #include <utility>
 
+#include <rastrum/core/aligned_memory.hpp>
 #include <rastrum/error.hpp>
 
 namespace rastrum {
@@ -59,7 +59,7 @@ class ScratchBuffer {
     // Without survivors the old memory goes first, so that both are never held at once.
     if (keep == 0) release();
     const std::size_t bytes = (count * sizeof(T) + 63) / 64 * 64;
-    std::unique_ptr<T[], Free> grown(static_cast<T*>(std::aligned_alloc(64, bytes)));
+    std::unique_ptr<T[], Free> grown(static_cast<T*>(aligned_allocate(64, bytes)));
     if (!grown) fail(count);
     std::copy_n(data_.get(), keep, grown.get());
     account_->add(count * sizeof(T));
@@ -79,7 +79,7 @@ class ScratchBuffer {
 
  private:
   struct Free {
-    void operator()(T* p) const noexcept { std::free(p); }
+    void operator()(T* p) const noexcept { aligned_free(p); }
   };
   void release() noexcept {
     data_.reset();

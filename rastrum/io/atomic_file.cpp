@@ -1,17 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/io.hpp>
 
-#include <fcntl.h>
-#include <pthread.h>
-#include <sys/file.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <mutex>
@@ -22,20 +15,15 @@
 
 #include <rastrum/error.hpp>
 #include <rastrum/io/files.hpp>
+#include <rastrum/io/system.hpp>
 
 namespace rastrum::io {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kLongestHost = 64;
-
 /// The suffix of this host's temporaries. Each container is a host.
 const std::string& suffix() {
-  static const std::string all = [] {
-    char name[kLongestHost + 1] = {};
-    if (::gethostname(name, sizeof name - 1) != 0) name[0] = '\0';
-    return "@" + std::string(name) + ".rastrum-tmp";
-  }();
+  static const std::string all = "@" + host_name() + ".rastrum-tmp";
   return all;
 }
 
@@ -55,39 +43,16 @@ fs::path folder_of(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-/// Gives `fd`, which will replace `target`, its owner and mode.
-void take_mode(int fd, const fs::path& target) {
-  struct stat old {};
-  if (::stat(target.c_str(), &old) != 0) return;
-  mode_t mode = old.st_mode & 0777;
-  // We may not be allowed to set the owner. A group that cannot be set gets no more rights than
-  // everybody.
-  if (::fchown(fd, old.st_uid, old.st_gid) != 0 &&
-      ::fchown(fd, static_cast<uid_t>(-1), old.st_gid) != 0)
-    mode &= ~mode_t{0070} | ((mode & 0007U) << 3U);
-  ::fchmod(fd, mode);
-}
-
-/// A nameless file in `folder`; −1: errno says why not.
-int open_nameless(const std::string& folder) {
-  const int fd = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-  if (fd >= 0) return fd;
-  std::string name = folder + "/.rastrum-XXXXXX";  // some file systems have no nameless files
-  const int named = ::mkostemp(name.data(), O_CLOEXEC);
-  if (named >= 0) ::unlink(name.c_str());
-  return named;
-}
-
 /// The temporaries of this process. Making, renaming or removing one needs the mutex.
 struct Live {
   std::mutex mutex;
-  std::set<std::string> names;
+  std::set<fs::path> names;
 };
 Live& live() {
   static Live* all = new Live;  // never destroyed: a thread may still write at the end
   // A forked child has its own. Another thread may hold the parent's, whose names are not the
   // child's to remove.
-  static const int registered = pthread_atfork(nullptr, nullptr, [] { all = new Live; });
+  static const bool registered = after_fork([] { all = new Live; });
   static_cast<void>(registered);
   return *all;
 }
@@ -95,32 +60,27 @@ Live& live() {
 void forget(const fs::path& temporary) {
   Live& all = live();
   const std::scoped_lock lock(all.mutex);
-  ::unlink(temporary.c_str());
-  all.names.erase(temporary.string());
-}
-
-/// Whether the file of `fd` is now ours. False: another process took it for an abandoned one.
-bool keep(int fd) {
-  if (::flock(fd, LOCK_EX | LOCK_NB) != 0) return errno != EWOULDBLOCK;
-  struct stat info {};
-  return ::fstat(fd, &info) == 0 && info.st_nlink > 0;
+  std::error_code ignored;
+  fs::remove(temporary, ignored);
+  all.names.erase(temporary);
 }
 
 }  // namespace
 
 std::string why_not_writable(const fs::path& file) {
-  struct stat info {};
-  const bool exists = ::stat(file.c_str(), &info) == 0;
-  if (!exists && errno == ELOOP) return std::strerror(errno);
-  if (exists && S_ISDIR(info.st_mode)) return "it is a directory";
+  using Kind = FileInfo::Kind;
+  const std::optional<FileInfo> info = info_of(file);
+  if (!info && errno == ELOOP) return std::strerror(errno);
+  if (info && info->kind == Kind::folder) return "it is a directory";
   // Refused for root, too, who hardly wants to lose the file.
-  if (exists && S_ISREG(info.st_mode) && (info.st_mode & 0222) == 0) return "it is read-only";
-  if (exists && ::access(file.c_str(), W_OK) != 0) return std::strerror(errno);
-  if (exists && !S_ISREG(info.st_mode)) return {};  // a device, a pipe: written in place
+  if (info && info->kind == Kind::regular && info->read_only) return "it is read-only";
+  if (info && !may_write(file)) return std::strerror(errno);
+  if (info && info->kind != Kind::regular) return {};  // a device, a pipe: written in place
   const fs::path folder = folder_of(follow_links(file));
-  if (::stat(folder.c_str(), &info) != 0 || !S_ISDIR(info.st_mode))
+  const std::optional<FileInfo> around = info_of(folder);
+  if (!around || around->kind != Kind::folder)
     return "there is no directory " + folder.string() + "; create it first";
-  if (::access(folder.c_str(), W_OK) != 0) return folder.string() + ": " + std::strerror(errno);
+  if (!may_write(folder)) return folder.string() + ": " + std::strerror(errno);
   return {};
 }
 
@@ -146,10 +106,9 @@ struct AtomicFile::Impl {
 
 AtomicFile::Impl::Impl(const fs::path& file) : asked(file.string()), target(follow_links(file)) {
   if (const std::string why = why_not_writable(file); !why.empty()) fail(why.c_str());
-  std::error_code ignored;
-  const fs::file_status status = fs::status(file, ignored);
-  if (fs::exists(status) && !fs::is_regular_file(status)) {
-    const int fd = ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
+  const std::optional<FileInfo> info = info_of(file);
+  if (info && info->kind != FileInfo::Kind::regular) {
+    const int fd = open_to_write(file);
     if (fd < 0) fail(std::strerror(errno));
     if (::lseek(fd, 0, SEEK_CUR) < 0) {
       spool(fd);
@@ -165,7 +124,7 @@ AtomicFile::Impl::Impl(const fs::path& file) : asked(file.string()), target(foll
 }
 
 AtomicFile::Impl::Impl(StandardOutput) : asked("standard output") {
-  const int fd = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
+  const int fd = open_standard_output();
   if (fd < 0) fail(std::strerror(errno));
   spool(fd);
 }
@@ -185,25 +144,26 @@ void AtomicFile::Impl::open_temporary() {
     name.replace_filename(begin + std::to_string(serial++) + suffix());
     Live& all = live();
     const std::scoped_lock held(all.mutex);
-    const int fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    const int fd = create_file(name);
     error = fd < 0 ? errno : 0;
     if (fd < 0) continue;
-    if (!keep(fd)) {
+    if (!lock_file(fd)) {  // another process took it for an abandoned one
       ::close(fd);
       error = EEXIST;
       continue;
     }
     take_mode(fd, target);
-    lock = ::fcntl(fd, F_DUPFD_CLOEXEC, 0);
+    lock = duplicate(fd);
     stream = ::fdopen(fd, "wb");
     if (lock >= 0 && stream != nullptr) {
-      all.names.insert(name.string());
+      all.names.insert(name);
       temporary = name;
       return;
     }
     error = errno;
     if (stream == nullptr) ::close(fd);
-    ::unlink(name.c_str());
+    std::error_code ignored;
+    fs::remove(name, ignored);
   }
   if (stream != nullptr) std::fclose(stream);
   if (lock >= 0) ::close(lock);
@@ -254,12 +214,12 @@ void AtomicFile::Impl::send() {
   constexpr std::size_t kChunk = std::size_t{1} << 16;
   char bytes[kChunk];
   std::rewind(stream);
-  while (const std::size_t n = std::fread(bytes, 1, kChunk, stream))
-    for (std::size_t done = 0; done < n;) {
+  while (const auto n = static_cast<unsigned>(std::fread(bytes, 1, kChunk, stream)))
+    for (unsigned done = 0; done < n;) {
       const ssize_t now = ::write(sent, bytes + done, n - done);
       if (now < 0 && errno == EINTR) continue;
       if (now < 0) fail(std::strerror(errno));
-      done += static_cast<std::size_t>(now);
+      done += static_cast<unsigned>(now);
     }
   if (std::ferror(stream) != 0) fail(std::strerror(errno));
   const int fd = sent;
@@ -281,8 +241,10 @@ void AtomicFile::commit(std::span<AtomicFile* const> files) {
   for (AtomicFile* const file : files) {
     Impl& f = *file->impl_;
     if (f.temporary.empty()) continue;
-    if (::rename(f.temporary.c_str(), f.target.c_str()) != 0) f.fail(std::strerror(errno));
-    all.names.erase(f.temporary.string());
+    std::error_code error;
+    fs::rename(f.temporary, f.target, error);
+    if (error) f.fail(error.message().c_str());
+    all.names.erase(f.temporary);
     f.temporary.clear();
   }
 }
@@ -291,23 +253,11 @@ void AtomicFile::Impl::fail(const char* what) const {
   throw Error(Errc::io, asked + ": cannot be written: " + what);
 }
 
-std::FILE* open_scratch_file() {
-  const char* const said = std::getenv("TMPDIR");
-  int fd = -1;
-  for (const char* const folder : {said, "/tmp", "/var/tmp", "."})
-    if (fd < 0 && folder != nullptr && *folder != '\0') fd = open_nameless(folder);
-  // memfd_create, which glibc has from 2.27 on.
-  if (fd < 0) fd = static_cast<int>(::syscall(SYS_memfd_create, "rastrum", 1U /* MFD_CLOEXEC */));
-  if (fd < 0) return nullptr;
-  std::FILE* const stream = ::fdopen(fd, "w+b");
-  if (stream == nullptr) ::close(fd);
-  return stream;
-}
-
 void abandon_files() noexcept {
   Live& all = live();
   all.mutex.lock();  // never unlocked (see the header)
-  for (const std::string& name : all.names) ::unlink(name.c_str());
+  std::error_code ignored;
+  for (const fs::path& name : all.names) fs::remove(name, ignored);
 }
 
 void remove_abandoned(PathView folder) {
@@ -316,10 +266,7 @@ void remove_abandoned(PathView folder) {
        at.increment(error)) {
     const std::string name = at->path().filename().string();
     if (!name.starts_with('.') || !name.ends_with(suffix())) continue;
-    const int fd = ::open(at->path().c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-    if (fd < 0) continue;
-    if (::flock(fd, LOCK_EX | LOCK_NB) == 0) ::unlink(at->path().c_str());
-    ::close(fd);
+    remove_unlocked(at->path());
   }
 }
 

@@ -1,21 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Helpers of programs: files that were read and must not be replaced (mapped_file.cpp), files that
-// can be written (atomic_file.cpp), messages.
+// Helpers of programs: which file a name means (system.hpp), files that were read and must not be
+// replaced (mapped_file.cpp), files that can be written (atomic_file.cpp), messages.
 #pragma once
 
-#include <sys/stat.h>
-
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <string>
+#include <utility>
 
 namespace rastrum::io {
 
+/// A file's device and number there, by any name or link.
+using FileId = std::pair<std::uint64_t, std::uint64_t>;
+/// None: there is no such file.
+[[nodiscard]] std::optional<FileId> id_of(const std::filesystem::path& file);
+
 /// From now on the library remembers the files that it reads, by device and number. Thread-safe, as
-/// the next three.
+/// the next two.
 void remember_files_read();
 void remember_read(const std::filesystem::path& file);
-void remember_read(const struct stat& file);
 /// Whether `file`, by any name or link, is a remembered file.
 [[nodiscard]] bool was_read(const std::filesystem::path& file);
 

@@ -8,7 +8,9 @@
 #include <jerror.h>
 #include <jpeglib.h>
 
+#include <algorithm>
 #include <csetjmp>
+#include <limits>
 #include <string>
 
 #include <rastrum/io/parse.hpp>
@@ -67,7 +69,10 @@ bool read_header(State* state, Bytes bytes) {
   state->jpeg.client_data = state;
   state->progress.progress_monitor = on_progress;
   state->jpeg.progress = &state->progress;
-  jpeg_mem_src(&state->jpeg, reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+  // Windows' long has 32 bits.
+  const auto size = static_cast<unsigned long>(
+      std::min<std::size_t>(bytes.size(), std::numeric_limits<unsigned long>::max()));
+  jpeg_mem_src(&state->jpeg, reinterpret_cast<const unsigned char*>(bytes.data()), size);
   jpeg_read_header(&state->jpeg, TRUE);
   if (state->jpeg.jpeg_color_space == JCS_CMYK || state->jpeg.jpeg_color_space == JCS_YCCK) {
     state->unsupported = true;

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/io/mapped_file.hpp>
 
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -18,6 +15,7 @@
 
 #include <rastrum/error.hpp>
 #include <rastrum/io/files.hpp>
+#include <rastrum/io/system.hpp>
 
 namespace rastrum::io {
 namespace {
@@ -30,11 +28,17 @@ namespace {
 struct FilesRead {
   std::atomic<bool> remembers{false};
   std::mutex mutex;
-  std::set<std::pair<dev_t, ino_t>> files;
+  std::set<FileId> files;
 };
 FilesRead& all() {
   static FilesRead* const files = new FilesRead;  // never destroyed: a thread may read at the end
   return *files;
+}
+
+void remember(const FileInfo& file) {
+  if (!all().remembers || file.kind != FileInfo::Kind::regular) return;
+  const std::scoped_lock lock(all().mutex);
+  all().files.insert(file.id);
 }
 
 struct Descriptor {
@@ -50,51 +54,48 @@ void remember_files_read() {
   all().remembers = true;
 }
 
-void remember_read(const struct stat& file) {
-  if (!all().remembers || !S_ISREG(file.st_mode)) return;
-  const std::scoped_lock lock(all().mutex);
-  all().files.emplace(file.st_dev, file.st_ino);
+std::optional<FileId> id_of(const std::filesystem::path& file) {
+  const std::optional<FileInfo> info = info_of(file);
+  if (!info) return {};
+  return info->id;
 }
 
 void remember_read(const std::filesystem::path& file) {
-  struct stat info {};
-  if (::stat(file.c_str(), &info) == 0) remember_read(info);
+  if (const std::optional<FileInfo> info = info_of(file)) remember(*info);
 }
 
 bool was_read(const std::filesystem::path& file) {
-  struct stat info {};
-  if (::stat(file.c_str(), &info) != 0) return false;
+  const std::optional<FileId> id = id_of(file);
+  if (!id) return false;
   const std::scoped_lock lock(all().mutex);
-  return all().files.contains({info.st_dev, info.st_ino});
+  return all().files.contains(*id);
 }
 
 MappedFile::MappedFile(const std::filesystem::path& file, Kind kind) : file_(file) {
-  // O_NONBLOCK opens a pipe without a writer at once; it is refused below.
-  const int wait = kind == Kind::regular ? O_NONBLOCK : 0;
-  const Descriptor d{::open(file.c_str(), O_RDONLY | O_CLOEXEC | wait)};
+  // A pipe is refused below, with or without a writer.
+  const Descriptor d{open_to_read(file, kind != Kind::regular)};
   if (d.fd < 0) fail(file, errno);
-  struct stat info {};
-  if (::fstat(d.fd, &info) != 0) fail(file, errno);
-  if (S_ISDIR(info.st_mode)) fail(file, EISDIR);
-  remember_read(info);
-  if (!S_ISREG(info.st_mode)) {
+  const std::optional<FileInfo> info = info_of(d.fd);
+  if (!info) fail(file, errno);
+  if (info->kind == FileInfo::Kind::folder) fail(file, EISDIR);
+  remember(*info);
+  if (info->kind != FileInfo::Kind::regular) {
     if (kind == Kind::regular)
       throw Error(Errc::io, file.string() + ": is no regular file, and is not read");
     copy(d.fd);
     return;
   }
-  size_ = static_cast<std::size_t>(info.st_size);
-  if (size_ == 0) return;  // mmap refuses empty mappings
-  void* p = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, d.fd, 0);
-  if (p == MAP_FAILED) fail(file, errno);
-  data_ = static_cast<const std::byte*>(p);
+  size_ = static_cast<std::size_t>(info->bytes);
+  if (size_ == 0) return;  // systems refuse empty mappings
+  data_ = map_file(d.fd, size_);
+  if (data_ == nullptr) fail(file, errno);
   mapped_.emplace(data_, size_);
   if (mapped_->watches()) {
-    ::madvise(p, size_, MADV_SEQUENTIAL);
+    advise(MapAdvice::sequential, data_, size_);
     return;
   }
   mapped_.reset();
-  ::munmap(p, size_);
+  unmap_file(data_, size_);
   copy(d.fd);
 }
 
@@ -127,26 +128,25 @@ void MappedFile::check() const {
 
 void MappedFile::will_need(std::size_t offset, std::size_t size) const {
   if (!mapped_ || offset >= size_) return;
-  static const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  const std::size_t page = page_bytes();
   const std::size_t begin = offset / page * page, end = offset + std::min(size, size_ - offset);
-  ::madvise(const_cast<std::byte*>(data_) + begin, end - begin, MADV_WILLNEED);
+  advise(MapAdvice::will_need, data_ + begin, end - begin);
 }
 
 void MappedFile::drop(std::size_t offset, std::size_t size) const {
   if (!mapped_ || offset >= size_) return;
-  static const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  const std::size_t page = page_bytes();
   const std::size_t begin = (offset + page - 1) / page * page;
   // The file's last page counts as whole.
   const std::size_t stop = offset + std::min(size, size_ - offset);
   const std::size_t end = stop == size_ ? stop : stop / page * page;
-  if (begin < end) ::madvise(const_cast<std::byte*>(data_) + begin, end - begin, MADV_DONTNEED);
+  if (begin < end) advise(MapAdvice::drop, data_ + begin, end - begin);
 }
 
 MappedFile::~MappedFile() {
   if (!mapped_) return;
   mapped_.reset();  // before another file may be mapped there
-  // munmap takes a non-const pointer but writes nothing.
-  ::munmap(const_cast<std::byte*>(data_), size_);
+  unmap_file(data_, size_);
 }
 
 }  // namespace rastrum::io

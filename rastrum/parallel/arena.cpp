@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstdlib>
 
 #if defined(__linux__)
 #include <sys/mman.h>
 #endif
 
+#include <rastrum/core/aligned_memory.hpp>
 #include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
 
@@ -32,7 +32,7 @@ constexpr bool kKeeps = true;
 void* system_allocate(std::size_t bytes) noexcept {
   const bool large = bytes >= 2 * kLargePage;
   const std::size_t alignment = large ? kLargePage : kAlignment;
-  void* const data = std::aligned_alloc(alignment, (bytes + alignment - 1) / alignment * alignment);
+  void* const data = aligned_allocate(alignment, (bytes + alignment - 1) / alignment * alignment);
 #if defined(__linux__)
   // Only advice: if it fails, the pages are slower.
   if (large && data != nullptr) static_cast<void>(madvise(data, bytes, MADV_HUGEPAGE));
@@ -41,7 +41,7 @@ void* system_allocate(std::size_t bytes) noexcept {
 }
 
 void system_release(void* block) noexcept {
-  std::free(block);
+  aligned_free(block);
 }
 
 }  // namespace

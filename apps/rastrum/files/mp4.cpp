@@ -97,7 +97,8 @@ void Mp4Writer::Impl::start(const std::string& program, const std::vector<std::s
   argv.push_back(nullptr);
   const int output = ::fileno(file.stream());
   int ends[2];
-  if (said == nullptr || ::pipe2(ends, O_CLOEXEC) != 0) file.fail(std::strerror(errno));
+  if (said == nullptr || ::pipe(ends) != 0) file.fail(std::strerror(errno));
+  for (const int end : ends) ::fcntl(end, F_SETFD, FD_CLOEXEC);
   child = ::fork();
   if (child == 0) {
     // Between fork and exec only async-signal-safe calls are allowed.

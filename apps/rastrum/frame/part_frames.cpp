@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <sys/resource.h>
-
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -11,6 +9,7 @@
 
 #include "frames.hpp"
 #include "job/part_job.hpp"
+#include "job/system.hpp"
 #include "stats_json.hpp"
 
 namespace rastrum::cli {
@@ -18,13 +17,6 @@ namespace {
 
 /// Picture bytes that a rank may hold without a memory limit.
 constexpr std::uint64_t kUsualBytes = std::uint64_t{1} << 30;
-
-/// The process's peak memory as the system counts it.
-double peak_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) * 1024;
-}
 
 /// Rows that are drawn at once; 0: all, if they fit or something needs the whole picture.
 int rows_of(const PartJob& job) {

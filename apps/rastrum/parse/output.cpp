@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "output.hpp"
 
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -36,14 +35,14 @@ fs::path resolved(const fs::path& file) {
 class Written {
  public:
   void add(const Output& output) {
-    struct stat info {};
-    const bool exists = !output.to_stdout() && ::stat(output.file.c_str(), &info) == 0;
+    std::optional<io::FileId> id;
+    if (!output.to_stdout()) id = io::id_of(output.file);
     check_is_not_read(output);
     const auto [name, is_new] = names_.try_emplace(resolved(output.file), output.option);
     if (!is_new) refuse(output, name->second);
-    if (!exists) return;
+    if (!id) return;
     // Hard links name one file, too. Between the pictures of one option they are harmless.
-    const auto file = files_.try_emplace({info.st_dev, info.st_ino}, output.option).first;
+    const auto file = files_.try_emplace(*id, output.option).first;
     if (file->second != output.option) refuse(output, file->second);
   }
 
@@ -53,7 +52,7 @@ class Written {
                      output.name() + " is also the file of " + other + "; give each its own file");
   }
   std::map<fs::path, std::string> names_;
-  std::map<std::pair<dev_t, ino_t>, std::string> files_;
+  std::map<io::FileId, std::string> files_;
 };
 
 void check_standard_output(const Output& output) {

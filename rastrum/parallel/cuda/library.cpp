@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <rastrum/parallel/cuda/library.hpp>
 
+#if !defined(_WIN32)
 #include <dlfcn.h>
+#endif
 
 #include <rastrum/core/number_text.hpp>
 #include <rastrum/error.hpp>
@@ -21,6 +23,11 @@ const OpenedCudaLibrary& opened() {
 
 }  // namespace
 
+#if defined(_WIN32)
+OpenedCudaLibrary open_cuda_library(const char* /*file*/) {
+  return {nullptr, "Rastrum has no device code for Windows"};
+}
+#else
 OpenedCudaLibrary open_cuda_library(const char* file) {
   // Its names stay local (RTLD_LOCAL), and all are resolved now (RTLD_NOW).
   void* const handle = ::dlopen(file, RTLD_NOW | RTLD_LOCAL);
@@ -39,6 +46,7 @@ OpenedCudaLibrary open_cuda_library(const char* file) {
                              RASTRUM_CUDA_LIBRARY_VERSION, "; install both from one build")};
   return {library, {}};
 }
+#endif
 
 const CudaLibrary& cuda_library() {
   const OpenedCudaLibrary& there = opened();
