@@ -10,6 +10,7 @@
 #   deb       Debian's packages, tried in a Debian that has nothing else (root, mmdebstrap)
 #   image     the programs as images of containers (umoci), tried by podman
 #   sbom      which libraries wheels and programs contain (CycloneDX)
+#   wasm      the library for browsers, as an npm package, tried in chromium
 #   daily     not one of all: a quick wheel, for `./dev check`
 #
 # zig's clang compiles them (PyPI's ziglang), which has the libraries of old systems. The libraries for files are static,
@@ -57,18 +58,19 @@ tools() {
 
 zig() { echo "$(tools)"/lib/python*/site-packages/ziglang/zig; }
 
-# Debian's source packages of the libraries for files, unpacked into $work/sources. The machine's own lists stay as they are.
+# fetch_sources RELEASE FOLDER PACKAGE…: Debian's source packages of the libraries, unpacked into $work/FOLDER. The machine's own
+# lists stay as they are.
 fetch_sources() {
-  [[ -e $work/sources/complete ]] && return
+  [[ -e $work/$2/complete ]] && return
   local lists="$work/apt"
-  rm -rf "$work/sources" "$lists"
-  mkdir -p "$work/sources" "$lists/lists/partial" "$lists/cache/archives/partial"
-  echo "deb-src http://deb.debian.org/debian bookworm main" >"$lists/sources.list"
+  rm -rf "${work:?}/$2" "$lists"
+  mkdir -p "$work/$2" "$lists/lists/partial" "$lists/cache/archives/partial"
+  echo "deb-src http://deb.debian.org/debian $1 main" >"$lists/sources.list"
   local options=(-o "Dir::Etc::SourceList=$lists/sources.list" -o Dir::Etc::SourceParts=/dev/null
     -o "Dir::State::Lists=$lists/lists" -o "Dir::Cache=$lists/cache" -o APT::Sandbox::User=)
   apt-get "${options[@]}" -qq update
-  (cd "$work/sources" && apt-get "${options[@]}" -qq source "${sources[@]}" "${program_sources[@]}")
-  touch "$work/sources/complete"
+  (cd "$work/$2" && apt-get "${options[@]}" -qq source "${@:3}")
+  touch "$work/$2/complete"
 }
 
 # configure FOLDER SOURCE TARGET OPTION…: for zig's TARGET, with the libraries for files of that target.
@@ -90,9 +92,9 @@ library() {
   touch "$folder/complete"
 }
 
-# The libraries that Rastrum needs.
+# needed_libraries TARGET OPTION…: the libraries that Rastrum needs.
 needed_libraries() {
-  library "$1" third packaging/third_parties "-DSOURCES=$work/sources"
+  library "$1" third packaging/third_parties "-DSOURCES=$work/sources" "${@:2}"
   library "$1" jpeg "$(echo "$work"/sources/libjpeg-turbo-*/)" -DENABLE_SHARED=OFF -DWITH_SIMD=OFF -DWITH_TURBOJPEG=OFF
 }
 
@@ -238,6 +240,26 @@ program_licences() {
 
 version() { sed -n 's/^#define RASTRUM_VERSION_.* //p' include/rastrum/version.hpp | paste -sd.; }
 
+# Debian 12's Highway refuses some kernels for WebAssembly, Debian 13's does not.
+make_wasm() {
+  local target=wasm32-wasi folder="$work/wasm" library licence
+  fetch_sources trixie highway highway
+  needed_libraries "$target" "-DHIGHWAY=$(echo "$work"/highway/highway-*/)"
+  configure "$work/$target/module" packaging/wasm "$target"
+  cmake --build "$work/$target/module" --target module
+  rm -rf "$folder"
+  mkdir -p "$folder/package/licences"
+  cp packaging/wasm/{index.html,package.json,rastrum.d.ts,rastrum.mjs,wasi.mjs,worker.mjs} "$work/$target/module/rastrum.wasm" \
+    "$folder/package"
+  sed -i "s/\"version\": .*,/\"version\": \"$(version)\",/" "$folder/package/package.json"
+  while IFS='=' read -r library licence; do
+    cp "$licence" "$folder/package/licences/$library.txt"
+  done < <(program_licences | grep -vE '^(libwebp|imath|openexr|muparser|cli11)='; echo "wasi-libc=$(dirname "$(zig)")/lib/libc/wasi/LICENSE")
+  python3 packaging/wasm/try.py "$folder/package"
+  tar -C "$folder" --sort=name "--mtime=@$SOURCE_DATE_EPOCH" --owner=0 --group=0 --numeric-owner --mode=u=rwX,go=rX -cf - package |
+    gzip -n9 >"$out/rastrum-wasm-$(version).tgz"
+}
+
 # Debian's packages for this Debian, of the last commit: the library is compiled by its g++.
 make_deb() {
   local folder="$work/deb" tree
@@ -370,14 +392,14 @@ main() {
   SOURCE_DATE_EPOCH="$(git log -1 --format=%ct)"
   export SOURCE_DATE_EPOCH
   mkdir -p "$work" "$out"
-  fetch_sources
+  fetch_sources bookworm sources "${sources[@]}" "${program_sources[@]}"
   local part parts=("$@")
-  ((${#parts[@]})) || parts=(wheels programs try sdist deb image sbom)
+  ((${#parts[@]})) || parts=(wheels programs try sdist deb image sbom wasm)
   for part in "${parts[@]}"; do
     case "$part" in
-      wheels | programs | try | sdist | deb | image | sbom) "make_$part" ;;
+      wheels | programs | try | sdist | deb | image | sbom | wasm) "make_$part" ;;
       daily) make_daily; exit ;;
-      *) echo "release: there is no part '$part'; the parts are wheels, programs, try, sdist, deb, image, sbom" >&2; exit 2 ;;
+      *) echo "release: there is no part '$part'; the parts are wheels, programs, try, sdist, deb, image, sbom, wasm" >&2; exit 2 ;;
     esac
   done
   (cd "$out" && rm -f SHA256SUMS && sha256sum -- * >"$work/sums" && mv "$work/sums" SHA256SUMS && ls -l)

@@ -39,3 +39,6 @@ set(CMAKE_RANLIB ${zig_tools}/ranlib CACHE FILEPATH "")
 # Libraries of the machine that compiles are for another system.
 set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
+if(CMAKE_SYSTEM_PROCESSOR STREQUAL wasm32)
+  include(${CMAKE_CURRENT_LIST_DIR}/wasm/wasi.cmake)
+endif()

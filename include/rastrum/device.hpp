@@ -24,7 +24,7 @@ struct DeviceStream {
 };
 
 /// The instruction sets that SIMD code is compiled for. `scalar` is plain C++.
-enum class Isa : std::uint8_t { scalar, sse4, avx2, avx512, neon };
+enum class Isa : std::uint8_t { scalar, sse4, avx2, avx512, neon, wasm };
 [[nodiscard]] std::string_view name(Isa isa);
 /// The instruction sets that this machine can run and this library is compiled for, slowest first.
 /// The first is always `scalar`.

@@ -239,7 +239,7 @@ class Renderer:
 
     threads: None takes RASTRUM_NUM_THREADS or the cores that this process may use. memory_limit: the most bytes of memory
     beside meshes and pictures, 0 for no limit; what does not fit at once is drawn piece by piece. device: threads, serial,
-    cuda or auto. isa: scalar, sse4, avx2, avx512 or neon, None takes the best that this machine has; the picture is the same.
+    cuda or auto. isa: scalar, sse4, avx2, avx512, neon or wasm, None takes the best that this machine has; the picture is the same.
     """
 
     @raises_errors

@@ -259,8 +259,9 @@ void bind_frames(nb::module_& m) {
                 value_named("device", device,
                             {Device::serial, Device::threads, Device::cuda, Device::automatic});
             if (isa)
-              o.isa = value_named("isa", *isa,
-                                  {Isa::scalar, Isa::sse4, Isa::avx2, Isa::avx512, Isa::neon});
+              o.isa = value_named(
+                  "isa", *isa,
+                  {Isa::scalar, Isa::sse4, Isa::avx2, Isa::avx512, Isa::neon, Isa::wasm});
             new (self) FrameRenderer(o);
           },
           arg("threads"), arg("memory_limit"), arg("device"), arg("isa").none())

@@ -23,8 +23,13 @@ struct rastrum_scene {
   /// One per instance; copies share one until an attribute is set.
   std::vector<std::shared_ptr<rastrum::GeometryView>> geometries;
   std::vector<rastrum::ScalarMapping> color_maps;
+  /// A reader's scene, which the instances refer to; null: all arrays are the caller's.
+  std::shared_ptr<const rastrum::Scene> read;
 
-  [[nodiscard]] rastrum::SceneView view() const { return {instances, {}, {}, color_maps}; }
+  [[nodiscard]] rastrum::SceneView view() const {
+    if (read == nullptr) return {instances, {}, {}, color_maps};
+    return {instances, read->materials, read->textures, color_maps};
+  }
 };
 
 struct rastrum_camera {

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fcntl.h>
-#include <pthread.h>
-#include <sys/file.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -12,6 +10,10 @@
 
 #if defined(__linux__)
 #include <sys/syscall.h>
+#endif
+#if !defined(__wasi__)
+#include <pthread.h>
+#include <sys/file.h>
 #endif
 
 #include <rastrum/io/system.hpp>
@@ -28,18 +30,6 @@ FileInfo info_of(const struct stat& file) {
   info.read_only = (file.st_mode & 0222) == 0;
   info.id = {static_cast<std::uint64_t>(file.st_dev), static_cast<std::uint64_t>(file.st_ino)};
   return info;
-}
-
-/// A nameless file in `folder`.
-int open_nameless(const std::string& folder) {
-#if defined(O_TMPFILE)
-  const int fd = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
-  if (fd >= 0) return fd;
-#endif
-  std::string name = folder + "/.rastrum-XXXXXX";  // some file systems have no nameless files
-  const int named = ::mkostemp(name.data(), O_CLOEXEC);
-  if (named >= 0) ::unlink(name.c_str());
-  return named;
 }
 
 }  // namespace
@@ -64,14 +54,78 @@ int open_to_read(const fs::path& file, bool wait) {
 int open_to_write(const fs::path& file) {
   return ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
 }
+int create_file(const fs::path& file) {
+  return ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+}
+
+const std::byte* map_file(int descriptor, std::size_t bytes) {
+  void* const data = ::mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE, descriptor, 0);
+  return data == MAP_FAILED ? nullptr : static_cast<const std::byte*>(data);
+}
+void unmap_file(const std::byte* data, std::size_t bytes) {
+  // munmap takes a non-const pointer but writes nothing.
+  ::munmap(const_cast<std::byte*>(data), bytes);
+}
+
+#if defined(__wasi__)
+// WebAssembly's one process has its files in memory and writes none.
+namespace {
+
+template <class T = int>
+T none(T result = -1) {
+  errno = ENOTSUP;
+  return result;
+}
+
+}  // namespace
+
+int open_standard_output() {
+  return none();
+}
+int duplicate(int /*descriptor*/) {
+  return none();
+}
+void take_mode(int /*descriptor*/, const fs::path& /*target*/) {}
+bool lock_file(int /*descriptor*/) {
+  return true;
+}
+void remove_unlocked(const fs::path& /*file*/) {}
+std::string host_name() {
+  return {};
+}
+bool after_fork(void (* /*run*/)()) {
+  return false;
+}
+void advise(MapAdvice /*advice*/, const std::byte* /*begin*/, std::size_t /*bytes*/) {}
+std::size_t page_bytes() {
+  return 65536;
+}
+std::FILE* open_scratch_file() {
+  return none<std::FILE*>(nullptr);
+}
+
+#else
+namespace {
+
+/// A nameless file in `folder`.
+int open_nameless(const std::string& folder) {
+#if defined(O_TMPFILE)
+  const int fd = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  if (fd >= 0) return fd;
+#endif
+  std::string name = folder + "/.rastrum-XXXXXX";  // some file systems have no nameless files
+  const int named = ::mkostemp(name.data(), O_CLOEXEC);
+  if (named >= 0) ::unlink(name.c_str());
+  return named;
+}
+
+}  // namespace
+
 int open_standard_output() {
   return duplicate(STDOUT_FILENO);
 }
 int duplicate(int descriptor) {
   return ::fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
-}
-int create_file(const fs::path& file) {
-  return ::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
 }
 
 void take_mode(int descriptor, const fs::path& target) {
@@ -109,14 +163,6 @@ bool after_fork(void (*run)()) {
   return ::pthread_atfork(nullptr, nullptr, run) == 0;
 }
 
-const std::byte* map_file(int descriptor, std::size_t bytes) {
-  void* const data = ::mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE, descriptor, 0);
-  return data == MAP_FAILED ? nullptr : static_cast<const std::byte*>(data);
-}
-void unmap_file(const std::byte* data, std::size_t bytes) {
-  // munmap takes a non-const pointer but writes nothing.
-  ::munmap(const_cast<std::byte*>(data), bytes);
-}
 void advise(MapAdvice advice, const std::byte* begin, std::size_t bytes) {
   constexpr int kAdvices[] = {MADV_SEQUENTIAL, MADV_WILLNEED, MADV_DONTNEED};
   ::madvise(const_cast<std::byte*>(begin), bytes, kAdvices[static_cast<int>(advice)]);
@@ -140,5 +186,6 @@ std::FILE* open_scratch_file() {
   if (stream == nullptr) ::close(fd);
   return stream;
 }
+#endif
 
 }  // namespace rastrum::io

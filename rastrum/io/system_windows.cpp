@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <cwchar>
 
-#include <rastrum/io/lost_pages.hpp>
 #include <rastrum/io/system.hpp>
 
 namespace rastrum::io {
@@ -183,17 +182,6 @@ std::FILE* open_scratch_file() {
   std::FILE* const stream = ::_fdopen(fd, "w+b");
   if (stream == nullptr) ::_close(fd);
   return stream;
-}
-
-// Nobody can shorten a mapped file here. If its disk or network fails, the process ends.
-struct LostPages::Watched {};
-LostPages::LostPages(const std::byte* /*data*/, std::size_t /*size*/) {
-  static Watched all;
-  watched_ = &all;
-}
-LostPages::~LostPages() = default;
-bool LostPages::any() const {
-  return false;
 }
 
 }  // namespace rastrum::io

@@ -26,10 +26,16 @@
 #else
 #define RASTRUM_OF_NEON(name, otherwise) otherwise
 #endif
+#if HWY_TARGETS & HWY_WASM
+#define RASTRUM_OF_WASM(name, otherwise) &N_WASM::name
+#else
+#define RASTRUM_OF_WASM(name, otherwise) otherwise
+#endif
 
 /// The initializer of an array of pointers, in the order of rastrum::Isa.
 #define RASTRUM_BY_ISA(name, otherwise)                                            \
   {                                                                                \
     otherwise, RASTRUM_OF_SSE4(name, otherwise), RASTRUM_OF_AVX2(name, otherwise), \
-        RASTRUM_OF_AVX512(name, otherwise), RASTRUM_OF_NEON(name, otherwise)       \
+        RASTRUM_OF_AVX512(name, otherwise), RASTRUM_OF_NEON(name, otherwise),      \
+        RASTRUM_OF_WASM(name, otherwise)                                           \
   }

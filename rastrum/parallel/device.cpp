@@ -48,7 +48,7 @@ DeviceChoice choose_device(Device wanted) {
 }
 
 std::string_view name(Isa isa) {
-  return name_in({"scalar", "sse4", "avx2", "avx512", "neon"}, isa);
+  return name_in({"scalar", "sse4", "avx2", "avx512", "neon", "wasm"}, isa);
 }
 
 std::vector<Isa> available_isas() {
@@ -76,6 +76,8 @@ std::vector<Isa> available_isas() {
   if (avx512 && (HWY_TARGETS & HWY_AVX3) != 0) isas.push_back(Isa::avx512);
 #elif HWY_ARCH_ARM
   if ((HWY_TARGETS & HWY_NEON) != 0) isas.push_back(Isa::neon);
+#elif HWY_ARCH_WASM
+  if ((HWY_TARGETS & HWY_WASM) != 0) isas.push_back(Isa::wasm);
 #endif
   return isas;
 }
@@ -83,7 +85,7 @@ std::vector<Isa> available_isas() {
 Isa choose_isa(std::optional<Isa> wanted) {
   const std::vector<Isa> isas = available_isas();
   if (!wanted) return isas.back();
-  check_enum(*wanted, Isa::neon, "isa");
+  check_enum(*wanted, Isa::wasm, "isa");
   if (std::ranges::find(isas, *wanted) == isas.end()) {
     std::string others;
     for (const Isa isa : isas) others.append(others.empty() ? "" : ", ").append(name(isa));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The targets of Highway that kernels are compiled for: SSE4, AVX2, AVX-512 and NEON. Include it
-// before Highway in a source that includes itself once per target.
+// The targets of Highway that kernels are compiled for: SSE4, AVX2, AVX-512, NEON and
+// WebAssembly. Include it before Highway in a source that includes itself once per target.
 #pragma once
 
 // SSSE3 gains nothing beside SSE4, and our kernels use nothing of AVX3_DL. SVE's vectors have no

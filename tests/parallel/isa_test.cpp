@@ -28,6 +28,8 @@ TEST(Isa, AvailableOnesAreHighways) {
   EXPECT_EQ(has(Isa::avx512), (known & HWY_AVX3) != 0);
 #elif HWY_ARCH_ARM
   EXPECT_EQ(has(Isa::neon), (known & HWY_NEON) != 0);
+#elif HWY_ARCH_WASM
+  EXPECT_EQ(has(Isa::wasm), (known & HWY_WASM) != 0);
 #endif
 }
 

@@ -122,7 +122,8 @@ void add_device_options(Parser& app, Options& o) {
                              {"sse4", Isa::sse4},
                              {"avx2", Isa::avx2},
                              {"avx512", Isa::avx512},
-                             {"neon", Isa::neon}});
+                             {"neon", Isa::neon},
+                             {"wasm", Isa::wasm}});
       });
 }
 

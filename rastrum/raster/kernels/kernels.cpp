@@ -266,7 +266,7 @@ RaisedKeys raise_scalar(const QuadricBatch&, Rect, const DepthBounds*,
   return {};
 }
 
-constexpr std::size_t kIsaCount = static_cast<std::size_t>(Isa::neon) + 1;
+constexpr std::size_t kIsaCount = static_cast<std::size_t>(Isa::wasm) + 1;
 
 constexpr Kernels kScalar{
     project_scalar,   project64_scalar,    setup_scalar,         points_scalar,

@@ -109,7 +109,9 @@ class MaterialOfTriangle : DrawFinder<MaterialDraw> {
     if (!look_->colors.empty()) {
       out.with_colors |= bit;
       Vec4 color[3];
-      linear_colors(*look_, scene_.curve, {{3 * t, 3 * t + 1, 3 * t + 2}, t}, vertex, color);
+      const auto face = static_cast<std::size_t>(t);
+      linear_colors(*look_, scene_.curve, {{3 * face, 3 * face + 1, 3 * face + 2}, face}, vertex,
+                    color);
       set_colors(color, *out.material[lane], lane, out);
     }
   }
