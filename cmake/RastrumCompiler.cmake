@@ -31,7 +31,7 @@ if(RASTRUM_SANITIZE)
 endif()
 
 # Only ELF has it. clang warns of it elsewhere.
-if(NOT WIN32 AND NOT APPLE)
+if(CMAKE_EXECUTABLE_FORMAT STREQUAL "ELF")
   set(no_interposition -fno-semantic-interposition)
 endif()
 

@@ -21,9 +21,9 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 readonly work="$PWD/build/packages" out="$PWD/out/release" zig_version=0.17.0
 readonly processors=(x86_64 aarch64)
-# Debian's source packages: those that all packages contain, and those that the programs contain besides. Draco is not there,
-# because it takes minutes, nor what is loaded by its name when a file asks for it (libwebp, GDAL).
-readonly sources=(zlib libpng1.6 libdeflate libjpeg-turbo meshoptimizer) program_sources=(imath openexr muparser)
+# Debian's source packages that packages contain. Draco is not there, because it takes minutes, nor what is loaded by its name
+# when a file asks for it (libwebp, GDAL).
+readonly sources=(zlib libpng1.6 libdeflate libjpeg-turbo meshoptimizer imath openexr muparser)
 # The wheel for 3.12 serves all later Pythons.
 readonly pythons=(3.10 3.11 3.12)
 
@@ -98,8 +98,8 @@ needed_libraries() {
   library "$1" jpeg "$(echo "$work"/sources/libjpeg-turbo-*/)" -DENABLE_SHARED=OFF -DWITH_SIMD=OFF -DWITH_TURBOJPEG=OFF
 }
 
-# Those that the programs use besides; pyproject.toml leaves them out of wheels.
-program_libraries() {
+# Those that a file or a terrain may ask for.
+more_libraries() {
   library "$1" imath "$(echo "$work"/sources/imath-*/)"
   library "$1" openexr "$(echo "$work"/sources/openexr-*/)" -DOPENEXR_BUILD_TOOLS=OFF -DOPENEXR_INSTALL_{EXAMPLES,TOOLS}=OFF
   library "$1" muparser "$(echo "$work"/sources/muparser-*/)" -DENABLE_{SAMPLES,OPENMP}=OFF
@@ -116,6 +116,7 @@ wheel() {
     "cmake.define.RASTRUM_ZIG=$(zig)"
     "cmake.define.RASTRUM_ZIG_TARGET=$target"
     cmake.define.RASTRUM_TBB=OFF
+    cmake.define.CMAKE_DISABLE_FIND_PACKAGE_{OpenEXR,muparser}=OFF
   )
   rm -rf "$work/$target/wheel"
   _PYTHON_HOST_PLATFORM="linux-$1" SETUPTOOLS_EXT_SUFFIX=".cpython-${2/./}-$1-linux-gnu.so" CMAKE_GENERATOR=Ninja \
@@ -131,6 +132,7 @@ make_wheels() {
   local processor python
   for processor in "${processors[@]}"; do
     needed_libraries "$processor-linux-gnu.2.17"
+    more_libraries "$processor-linux-gnu.2.17"
     for python in "${pythons[@]}"; do
       python_of "$python" >/dev/null || { echo "note: there is no Python $python here, so no wheel for it"; continue; }
       wheel "$processor" "$python" "$out"
@@ -152,10 +154,13 @@ make_programs() {
   for processor in "${processors[@]}"; do
     target="$processor-linux-musl"
     needed_libraries "$target"
-    program_libraries "$target"
+    more_libraries "$target"
     program "$target" "rastrum-linux-$processor"
   done
-  for target in x86_64-windows-gnu aarch64-macos; do needed_libraries "$target"; done
+  for target in x86_64-windows-gnu aarch64-macos; do
+    needed_libraries "$target"
+    more_libraries "$target"
+  done
   program x86_64-windows-gnu rastrum-windows-x86_64.exe .exe
   program aarch64-macos rastrum-macos-arm64
 }
@@ -182,7 +187,7 @@ make_sbom() {
   local environment
   environment="$(tools)"
   "$environment/bin/pip" install -q --disable-pip-version-check 'cyclonedx-python-lib[json-validation]>=11,<12'
-  "$environment/bin/python" packaging/sbom.py "$(version)" "$out/rastrum-$(version).cdx.json" "$work/sources" "${sources[@]}" -- "${program_sources[@]}"
+  "$environment/bin/python" packaging/sbom.py "$(version)" "$out/rastrum-$(version).cdx.json" "$work/sources" "${sources[@]}"
 }
 
 # The programs as images for podman and its like, which hold nothing else but licences; the one for this processor is tried.
@@ -231,7 +236,7 @@ program_licences() {
   echo "rastrum=LICENSE"
   echo "font=rastrum/overlay/font/LICENSE"
   echo "colour_maps=rastrum/scene/color_maps/LICENSE"
-  for name in "${sources[@]}" "${program_sources[@]}"; do echo "$name=$(echo "$work/sources/$name"-*/debian/copyright)"; done
+  for name in "${sources[@]}"; do echo "$name=$(echo "$work/sources/$name"-*/debian/copyright)"; done
   for name in hwy nlohmann-json3 cli11; do echo "$name=$(echo /usr/share/doc/*"$name"-dev/copyright)"; done
   echo "libc++=$zig/lib/libcxx/LICENSE.TXT"
   echo "musl=$zig/lib/libc/musl/COPYRIGHT"
@@ -392,7 +397,7 @@ main() {
   SOURCE_DATE_EPOCH="$(git log -1 --format=%ct)"
   export SOURCE_DATE_EPOCH
   mkdir -p "$work" "$out"
-  fetch_sources bookworm sources "${sources[@]}" "${program_sources[@]}"
+  fetch_sources bookworm sources "${sources[@]}"
   local part parts=("$@")
   ((${#parts[@]})) || parts=(wheels programs try sdist deb image sbom wasm)
   for part in "${parts[@]}"; do

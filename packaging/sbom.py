@@ -2,8 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Writes which libraries the wheels and the programs contain, as CycloneDX, and validates that.
 
-usage: sbom.py VERSION OUTPUT SOURCES NAME… -- NAME…     SOURCES is the folder of Debian's source packages: those in wheels and
-                                                         programs, and those in programs alone
+usage: sbom.py VERSION OUTPUT SOURCES NAME…     SOURCES is the folder of Debian's source packages, NAMEs those that are inside
 
 It runs in the environment that builds wheels, whose zig and nanobind it names. The date is SOURCE_DATE_EPOCH.
 """
@@ -66,7 +65,7 @@ def inside(file, pattern):
     return re.findall(pattern, text)
 
 
-def bill(version, sources, names, program_names):
+def bill(version, sources, names):
     zig = python("ziglang", "MIT")  # the build's own functions, compiler_rt, are zig's
     llvm = inside("ziglang/lib/libcxx/include/__config", r"define _LIBCPP_VERSION (\d\d)(\d\d)(\d\d)")[0]
     cxx = component("libc++", ".".join(str(int(number)) for number in llvm), "Apache-2.0 WITH LLVM-exception",
@@ -78,7 +77,7 @@ def bill(version, sources, names, program_names):
             component("colour maps", version, "Apache-2.0 AND CC0-1.0", None, ComponentType.DATA)]
     wheels = [python("nanobind", "BSD-3-Clause"),
               component("robin-map", robin_map, "MIT", PackageURL("github", "tessil", "robin-map", f"v{robin_map}"))]
-    programs = [*of_sources(sources, program_names), *of_headers(PROGRAM_HEADERS), component("musl", musl, "MIT", PackageURL("generic", None, "musl", musl))]
+    programs = [*of_headers(PROGRAM_HEADERS), component("musl", musl, "MIT", PackageURL("generic", None, "musl", musl))]
 
     def of_rastrum(name, kind):
         return component(name, version, "BSD-3-Clause", None, kind)
@@ -99,8 +98,7 @@ def main():
     if len(sys.argv) < 5:
         raise SystemExit(__doc__)
     version, output, sources, *names = sys.argv[1:]
-    end = names.index("--")
-    text = JsonV1Dot6(bill(version, sources, names[:end], names[end + 1:])).output_as_string(indent=2)
+    text = JsonV1Dot6(bill(version, sources, names)).output_as_string(indent=2)
     problem = JsonStrictValidator(SchemaVersion.V1_6).validate_str(text)
     if problem:
         raise SystemExit(f"sbom.py: {problem}")
