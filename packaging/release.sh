@@ -24,16 +24,29 @@ readonly processors=(x86_64 aarch64)
 # Debian's source packages that packages contain. Draco is not there, because it takes minutes, nor what is loaded by its name
 # when a file asks for it (libwebp, GDAL).
 readonly sources=(zlib libpng1.6 libdeflate libjpeg-turbo meshoptimizer imath openexr muparser)
-# The wheel for 3.12 serves all later Pythons.
-readonly pythons=(3.10 3.11 3.12)
+# The wheel for 3.12 serves all later Pythons that have the global lock; a `t` is for one without.
+readonly pythons=(3.10 3.11 3.12 3.13t 3.14t)
+# Debian's releases with the sources of the latter, which no release has as packages.
+declare -rA python_releases=([3.13t]=trixie [3.14t]=forky)
 
-# python_of VERSION: a Python of this version, on the PATH or of pyenv.
+# python_of VERSION: a Python of this version, on the PATH, of pyenv, or compiled here.
 python_of() {
   local found
-  for found in "$(command -v "python$1" || true)" "$HOME"/.pyenv/versions/"$1".*/bin/python; do
+  for found in "$(command -v "python$1" || true)" "$HOME"/.pyenv/versions/"$1".*/bin/python "$work/$1/bin/python$1"; do
     [[ -x "$found" ]] && "$found" -c '' 2>/dev/null && { echo "$found"; return; }
   done
   return 1
+}
+
+# Compiles the Pythons without the global lock.
+free_threaded_pythons() {
+  local version
+  for version in "${!python_releases[@]}"; do
+    [[ -x $work/$version/bin/python$version ]] && continue
+    fetch_sources "${python_releases[$version]}" "$version-source" "python${version%t}"
+    (cd "$work/$version-source"/python*/ && ./configure -q --disable-gil "--prefix=$work/$version" && make -s -j "$(nproc)" &&
+      make -s install) >"$work/$version.log" 2>&1
+  done
 }
 
 # environment PYTHON: a virtual environment with what wheels are built with; prints its folder.
@@ -130,6 +143,7 @@ wheel() {
 
 make_wheels() {
   local processor python
+  free_threaded_pythons
   for processor in "${processors[@]}"; do
     needed_libraries "$processor-linux-gnu.2.17"
     more_libraries "$processor-linux-gnu.2.17"
