@@ -26,8 +26,6 @@ readonly processors=(x86_64 aarch64)
 readonly sources=(zlib libpng1.6 libdeflate libjpeg-turbo meshoptimizer imath openexr muparser)
 # The wheel for 3.12 serves all later Pythons that have the global lock; a `t` is for one without.
 readonly pythons=(3.10 3.11 3.12 3.13t 3.14t)
-# Debian's releases with the sources of the latter, which no release has as packages.
-declare -rA python_releases=([3.13t]=trixie [3.14t]=forky)
 
 # python_of VERSION: a Python of this version, on the PATH, of pyenv, or compiled here.
 python_of() {
@@ -38,15 +36,12 @@ python_of() {
   return 1
 }
 
-# Compiles the Pythons without the global lock.
-free_threaded_pythons() {
-  local version
-  for version in "${!python_releases[@]}"; do
-    [[ -x $work/$version/bin/python$version ]] && continue
-    fetch_sources "${python_releases[$version]}" "$version-source" "python${version%t}"
-    (cd "$work/$version-source"/python*/ && ./configure -q --disable-gil "--prefix=$work/$version" && make -s -j "$(nproc)" &&
-      make -s install) >"$work/$version.log" 2>&1
-  done
+# Debian 13 has the sources of a Python without the global lock, and no package of it.
+python_3_13t() {
+  python_of 3.13t >/dev/null && return
+  fetch_sources trixie 3.13t-source python3.13
+  (cd "$work"/3.13t-source/python*/ && ./configure -q --disable-gil "--prefix=$work/3.13t" && make -s -j "$(nproc)" &&
+    make -s install) >"$work/3.13t.log" 2>&1
 }
 
 # environment PYTHON: a virtual environment with what wheels are built with; prints its folder.
@@ -143,7 +138,7 @@ wheel() {
 
 make_wheels() {
   local processor python
-  free_threaded_pythons
+  python_3_13t
   for processor in "${processors[@]}"; do
     needed_libraries "$processor-linux-gnu.2.17"
     more_libraries "$processor-linux-gnu.2.17"
