@@ -29,6 +29,14 @@ LEFT_OUT = {
 }
 # Pages that list their folder, so that docs/site/ need not name its pages.
 INSIDE = {"decisions/index": "[0-9]*", "log/index": "*", "papers/index": "*/index"}
+# Pages that show a live picture above their second heading, if `./dev release wasm` has made the package, and what it shows.
+PACKAGE = "build/packages/wasm/package"
+LIVE = {"docs/browser.md": "shape=teapot", "docs/gallery.md": "shape=torus_knot&shader=normal"}
+FRAME = """```{{raw}} html
+<iframe src="live/index.html?{}" title="Rastrum in this browser" style="width: 100%; height: 62rem; border: 0"></iframe>
+```
+
+"""
 TOCTREE = re.compile(r"^```\{toctree\}\n(.*?)^```", re.MULTILINE | re.DOTALL)
 CODE = re.compile(r"^(```+).*?^\1|`[^`\n]+`", re.MULTILINE | re.DOTALL)
 LINK = re.compile(r"\]\(([^)#\s]*)(#[^)\s]*)?([^)]*)\)")
@@ -111,6 +119,8 @@ class Source:
             text = self.linked(path, (ROOT / path).read_text(encoding="utf-8"))
             if path == "README.md":
                 text += "\n" + (ROOT / SITE / "index.md").read_text(encoding="utf-8")
+            if path in LIVE and (ROOT / PACKAGE).is_dir():
+                text = text.replace("\n## ", "\n" + FRAME.format(LIVE[path]) + "## ", 1)
             if inside := INSIDE.get(name):
                 text += f"\n```{{toctree}}\n:maxdepth: 1\n:glob:\n\n{inside}\n```\n"
             self.write(f"{name}.md", text)

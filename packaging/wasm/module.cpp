@@ -36,6 +36,11 @@ rastrum_scene* handle_of(Scene read) {
 
 extern "C" {
 
+/// C++'s runtime asks it to destroy thread_local objects at a thread's end. The one thread ends with the module.
+int __cxa_thread_atexit(void (*)(void*), void*, void*) {
+  return 0;
+}
+
 /// Reads a file, by its extension; null: rastrum_error_text says why not.
 rastrum_scene* rastrum_wasm_read(const char* file) {
   return made([&] { return handle_of(io::read_scene(&at(file, "the file"))); });

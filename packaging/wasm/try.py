@@ -18,6 +18,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 
 HERE = pathlib.Path(__file__).parent
 
@@ -36,6 +37,12 @@ class Handler(http.server.SimpleHTTPRequestHandler):
             self.answer(b'<!DOCTYPE html><script type="module" src="try.mjs"></script>', "text/html")
         elif name == "/try.mjs":
             self.answer((HERE / "try.mjs").read_bytes(), "text/javascript")
+        elif name == "/late.png":  # a picture of the page is taken when it is loaded, and the worker needs some seconds
+            time.sleep(5)
+            self.answer(b"", "image/png")
+        elif name == "/late.html":
+            page = (pathlib.Path(self.directory) / "index.html").read_text(encoding="utf-8")
+            self.answer(page.replace("<h1>", '<img src="late.png" hidden><h1>').encode(), "text/html; charset=utf-8")
         elif name.startswith("/data/"):
             self.answer(self.data[name.removeprefix("/data/")].read_bytes(), "application/octet-stream")
         else:
@@ -85,8 +92,8 @@ def main():
                 browser.terminate()
                 browser.wait()
         if a.screenshot:
-            size = ["--window-size=900,1000", "--virtual-time-budget=20000", f"--screenshot={a.screenshot}"]
-            subprocess.run(chromium(folder, *size, f"{address}/index.html"), check=True, capture_output=True, timeout=120)
+            size = ["--window-size=900,1000", f"--screenshot={a.screenshot}"]
+            subprocess.run(chromium(folder, *size, f"{address}/late.html"), check=True, capture_output=True, timeout=120)
     print(json.dumps(report["figures"], indent=2))
     for line in report["passed"]:
         print("passed:", line)
