@@ -9,6 +9,7 @@
 #include <rastrum/fit.hpp>
 #include <rastrum/io.hpp>
 #include <rastrum/light.hpp>
+#include <rastrum/mesh.hpp>
 #include <rastrum/scene.hpp>
 #include <rastrum/shapes.hpp>
 
@@ -41,9 +42,16 @@ int __cxa_thread_atexit(void (*)(void*), void*, void*) {
   return 0;
 }
 
-/// Reads a file, by its extension; null: rastrum_error_text says why not.
-rastrum_scene* rastrum_wasm_read(const char* file) {
-  return made([&] { return handle_of(io::read_scene(&at(file, "the file"))); });
+/// Reads a file, by its extension. Meshes without normals get those of `rastrum render --crease`, in [0, 180].
+/// Null: rastrum_error_text says why not.
+rastrum_scene* rastrum_wasm_read(const char* file, double crease_deg) {
+  return made([&] {
+    Scene read = io::read_scene(&at(file, "the file"));
+    for (Mesh& mesh : read.meshes)
+      if (mesh.normals.empty())
+        mesh.normals = crease_normals(mesh.view().positions, mesh.indices, crease_deg);
+    return handle_of(std::move(read));
+  });
 }
 
 /// Makes a shape, as `teapot` or `hairball?strands=100`; null as above.

@@ -22,6 +22,8 @@ export interface FrameOptions {
   height: number;
   /** Images of docs/outputs.md; 'color8' alone unless it is said. */
   targets?: string[];
+  /** Those of `targets` whose digests are made. */
+  digests?: string[];
   shader?: 'auto' | 'flat' | 'depth' | 'normal' | 'id' | 'lambert' | 'phong' | 'material' | 'wireframe';
   background?: number[];
   samples?: 1 | 4 | 8 | 16;
@@ -31,7 +33,7 @@ export interface FrameOptions {
   lights?: Light[] | 'studio';
 }
 
-/** The images by their names, row 0 at the top, and their SHA-256, which equal those of `rastrum --hash`. */
+/** The images by their names, row 0 at the top, and the digests that were asked for, which equal those of `rastrum --hash`. */
 export interface Picture {
   width: number;
   height: number;
@@ -74,7 +76,7 @@ export interface Rastrum {
   /** Bytes of the module's memory, which grows and never shrinks. */
   readonly memoryBytes: number;
   /** Reads a file by its extension; the others are its companions (.mtl, .bin, pictures). */
-  read(files: Record<string, Uint8Array> | Map<string, Uint8Array>, name: string): Scene;
+  read(files: Record<string, Uint8Array> | Map<string, Uint8Array>, name: string, options?: { creaseDegrees?: number }): Scene;
   shape(spec: string): Scene;
   scene(): Scene;
   camera(options?: { eye?: number[]; target?: number[]; up?: number[]; fovDegrees?: number }): Camera;

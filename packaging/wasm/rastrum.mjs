@@ -38,18 +38,19 @@ class Rastrum {
     this.#c = exports;
     this.#wasi = wasi;
     this.#renderer = exports.rastrum_renderer_new();
-    this._call('rastrum_renderer_set_device', this.#renderer, 'serial');
+    this._call('rastrum_renderer_set_threads', this.#renderer, 1); // WebAssembly starts none
     this.version = this._text(exports.rastrum_version());
   }
 
   /** Bytes of the module's memory, which grows and never shrinks. */
   get memoryBytes() { return this.#c.memory.buffer.byteLength; }
 
-  /** Reads the file `name` of `files`, an object or Map from names to Uint8Arrays, beside which its companions lie. */
-  read(files, name) {
+  /** Reads the file `name` of `files`, an object or Map from names to Uint8Arrays, beside which its companions lie.
+   * Edges sharper than `creaseDegrees` stay sharp where a mesh has no normals. */
+  read(files, name, { creaseDegrees = 40 } = {}) {
     this.#wasi.files = files instanceof Map ? files : new Map(Object.entries(files));
     try {
-      return new Scene(this, this._made('rastrum_wasm_read', `/${name}`));
+      return new Scene(this, this._made('rastrum_wasm_read', `/${name}`, creaseDegrees));
     } finally {
       this.#wasi.files = new Map();
     }
@@ -63,8 +64,8 @@ class Rastrum {
 
   camera(options = {}) { return new Camera(this, this._made('rastrum_camera_new'), options); }
 
-  /** Draws a picture, and returns its images by their names (docs/outputs.md), and `digest(name)`. */
-  render(scene, camera, { width, height, targets = ['color8'], shader, background, samples, opacity, shadows, cull,
+  /** Draws a picture, and returns its images by their names (docs/outputs.md). `digests` names those whose digests are made, too. */
+  render(scene, camera, { width, height, targets = ['color8'], digests = [], shader, background, samples, opacity, shadows, cull,
     lights = [] }) {
     const frame = this._made('rastrum_frame_new', width, height);
     const places = [];
@@ -92,6 +93,8 @@ class Rastrum {
       for (const { target, type, bytes, at } of places) {
         const Numbers = target === 'color8' ? Uint8ClampedArray : NUMBERS[type];
         picture[target] = new Numbers(this.#c.memory.buffer.slice(at, at + bytes));
+      }
+      for (const target of digests) {
         const digest = this._allocate(65);
         try {
           set('digest', target, digest);
