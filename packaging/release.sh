@@ -11,7 +11,7 @@
 #   image     the programs as images of containers (umoci), tried by podman
 #   sbom      which libraries wheels and programs contain (CycloneDX)
 #   wasm      the library for browsers, as an npm package, tried in chromium
-#   daily     not one of all: a quick wheel, for `./dev check`
+#   daily     not one of all: a quick wheel and WebAssembly, for `./dev check`
 #
 # zig's clang compiles them (PyPI's ziglang), which has the libraries of old systems. The libraries for files are static,
 # of Debian's source packages (third_parties/CMakeLists.txt), whose licences travel along.
@@ -254,23 +254,27 @@ program_licences() {
 
 version() { sed -n 's/^#define RASTRUM_VERSION_.* //p' include/rastrum/version.hpp | paste -sd.; }
 
-# Debian 12's Highway refuses some kernels for WebAssembly, Debian 13's does not.
-make_wasm() {
-  local target=wasm32-wasi folder="$work/wasm" library licence
+# wasm FOLDER OPTION…: the package for browsers in FOLDER/package, tried in Chromium; OPTIONs are CMake's. Debian 12's Highway
+# refuses some kernels for WebAssembly, Debian 13's does not.
+wasm() {
+  local target=wasm32-wasi folder="$1" library licence
   fetch_sources trixie highway highway
   needed_libraries "$target" "-DHIGHWAY=$(echo "$work"/highway/highway-*/)"
-  configure "$work/$target/module" packaging/wasm "$target"
-  cmake --build "$work/$target/module" --target module
-  rm -rf "$folder"
+  configure "$folder/module" packaging/wasm "$target" "${@:2}"
+  cmake --build "$folder/module" --target module
+  rm -rf "$folder/package"
   mkdir -p "$folder/package/licences"
-  cp packaging/wasm/{index.html,package.json,rastrum.d.ts,rastrum.mjs,wasi.mjs,worker.mjs} "$work/$target/module/rastrum.wasm" \
-    "$folder/package"
+  cp packaging/wasm/{index.html,package.json,rastrum.d.ts,rastrum.mjs,wasi.mjs,worker.mjs} "$folder/module/rastrum.wasm" "$folder/package"
   sed -i "s/\"version\": .*,/\"version\": \"$(version)\",/" "$folder/package/package.json"
   while IFS='=' read -r library licence; do
     cp "$licence" "$folder/package/licences/$library.txt"
-  done < <(program_licences | grep -vE '^(libwebp|imath|openexr|muparser|cli11)='; echo "wasi-libc=$(dirname "$(zig)")/lib/libc/wasi/LICENSE")
+  done < <(program_licences | grep -vE '^(imath|openexr|muparser|cli11)='; echo "wasi-libc=$(dirname "$(zig)")/lib/libc/wasi/LICENSE")
   python3 packaging/wasm/try.py "$folder/package"
-  tar -C "$folder" --sort=name "--mtime=@$SOURCE_DATE_EPOCH" --owner=0 --group=0 --numeric-owner --mode=u=rwX,go=rX -cf - package |
+}
+
+make_wasm() {
+  wasm "$work/wasm"
+  tar -C "$work/wasm" --sort=name "--mtime=@$SOURCE_DATE_EPOCH" --owner=0 --group=0 --numeric-owner --mode=u=rwX,go=rX -cf - package |
     gzip -n9 >"$out/rastrum-wasm-$(version).tgz"
 }
 
@@ -389,8 +393,8 @@ make_try() {
   done
 }
 
-# What CI does each day: a wheel for this Debian's Python, with the libraries that are needed and little optimised, draws the
-# pictures of digests.txt.
+# What CI does each day: a wheel for this Debian's Python and WebAssembly, little optimised and with the libraries that are needed,
+# draw the pictures of digests.txt.
 make_daily() {
   local folder="$work/daily"
   rm -rf "$folder"
@@ -400,6 +404,7 @@ make_daily() {
   "$(python_of 3.11)" -m venv "$folder/python"
   "$folder/python/bin/pip" install -q --disable-pip-version-check "$folder"/*.whl
   diff <("$folder/python/bin/python" packaging/digests.py packaging/digests.txt "$folder/shapes") packaging/digests.txt
+  wasm "$folder/wasm" "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG"
 }
 
 main() {
