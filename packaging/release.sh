@@ -423,4 +423,4 @@ main() {
   done
   (cd "$out" && rm -f SHA256SUMS && sha256sum -- * >"$work/sums" && mv "$work/sums" SHA256SUMS && ls -l)
 }
-main "$@"
+main "$@"; exit  # the script may change meanwhile
