@@ -65,7 +65,7 @@ class Handler(http.server.SimpleHTTPRequestHandler):
 
 def chromium(folder, *arguments):
     program = shutil.which("chromium") or sys.exit("try.py: there is no chromium")
-    return [program, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={folder}", *arguments]
+    return [program, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", f"--user-data-dir={folder}", *arguments]
 
 
 def main():
