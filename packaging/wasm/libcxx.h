@@ -1,4 +1,5 @@
-// What libc++ asks of whoever builds it. Threads are there by name, for std::mutex and its like: wasi-libc starts none.
+// What libc++ asks of whoever builds it. Threads are there by name, for std::mutex and its like:
+// wasi-libc starts none.
 #ifndef _LIBCPP___CONFIG_SITE
 #define _LIBCPP___CONFIG_SITE
 #define _LIBCPP_ABI_VERSION 2

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The module for browsers has this beside rastrum.h: scenes that the library itself makes, and views by name.
+// The module for browsers has this beside rastrum.h: scenes that the library itself makes, and
+// views by name.
 #include <memory>
 #include <string_view>
 #include <utility>
@@ -37,13 +38,14 @@ rastrum_scene* handle_of(Scene read) {
 
 extern "C" {
 
-/// C++'s runtime asks it to destroy thread_local objects at a thread's end. The one thread ends with the module.
+/// C++'s runtime asks it to destroy thread_local objects at a thread's end. The one thread ends
+/// with the module.
 int __cxa_thread_atexit(void (*)(void*), void*, void*) {
   return 0;
 }
 
-/// Reads a file, by its extension. Meshes without normals get those of `rastrum render --crease`, in [0, 180].
-/// Null: rastrum_error_text says why not.
+/// Reads a file, by its extension. Meshes without normals get those of `rastrum render --crease`,
+/// in [0, 180]. Null: rastrum_error_text says why not.
 rastrum_scene* rastrum_wasm_read(const char* file, double crease_deg) {
   return made([&] {
     Scene read = io::read_scene(&at(file, "the file"));
@@ -72,7 +74,8 @@ const char* rastrum_wasm_warning(const rastrum_scene* scene, size_t i) {
   return scene->read->warnings[i].c_str();
 }
 
-/// Looks as `rastrum render --view NAME --azimuth A --elevation E` does, for rastrum_camera_fit to place.
+/// Looks as `rastrum render --view NAME --azimuth A --elevation E` does, for rastrum_camera_fit to
+/// place.
 rastrum_status rastrum_wasm_view(rastrum_camera* camera, const char* name, double azimuth_deg,
                                  double elevation_deg) {
   return guarded([&] {
