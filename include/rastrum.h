@@ -41,6 +41,8 @@ enum {
 /// The last failure of the calling thread as a sentence in UTF-8; "" before the first, never null.
 /// The text stays until this thread's next failure.
 const char* rastrum_error_text(void);
+/// The status of that failure, also where a function returned null; RASTRUM_OK before the first.
+rastrum_status rastrum_error_status(void);
 /// The version of the library: "major.minor.patch".
 const char* rastrum_version(void);
 

@@ -30,7 +30,7 @@ readonly pythons=(3.10 3.11 3.12 3.13t 3.14t)
 # python_of VERSION: a Python of this version, on the PATH, of pyenv, or compiled here.
 python_of() {
   local found
-  for found in "$(command -v "python$1" || true)" "$HOME"/.pyenv/versions/"$1".*/bin/python "$work/$1/bin/python$1"; do
+  for found in "$(command -v "python$1" || true)" "$HOME"/.pyenv/versions/"${1%t}".*[0-9]"${1//[0-9.]/}"/bin/python "$work/$1/bin/python$1"; do
     [[ -x "$found" ]] && "$found" -c '' 2>/dev/null && { echo "$found"; return; }
   done
   return 1
@@ -41,7 +41,7 @@ python_3_13t() {
   python_of 3.13t >/dev/null && return
   fetch_sources trixie 3.13t-source python3.13
   (cd "$work"/3.13t-source/python*/ && ./configure -q --disable-gil "--prefix=$work/3.13t" && make -s -j "$(nproc)" &&
-    make -s install) >"$work/3.13t.log" 2>&1
+    make -s install) >"$work/3.13t.log" 2>&1 || { tail -n 40 "$work/3.13t.log" >&2; return 1; }
 }
 
 # environment PYTHON: a virtual environment with what wheels are built with; prints its folder.
@@ -84,6 +84,7 @@ fetch_sources() {
 # configure FOLDER SOURCE TARGET OPTION…: for zig's TARGET, with the libraries for files of that target.
 configure() {
   local folder="$1" source="$2" target="$3"
+  mkdir -p "$(dirname "$folder")"
   cmake --no-warn-unused-cli -G Ninja -S "$source" -B "$folder" -DCMAKE_BUILD_TYPE=Release "-DCMAKE_TOOLCHAIN_FILE=$PWD/packaging/zig.cmake" \
     "-DRASTRUM_ZIG=$(zig)" "-DRASTRUM_ZIG_TARGET=$target" "-DCMAKE_FIND_ROOT_PATH=$work/$target/prefix" \
     -DCMAKE_{C,CXX}_COMPILER_LAUNCHER=ccache "-DCMAKE_INSTALL_PREFIX=$work/$target/prefix" "-DCMAKE_INSTALL_LIBDIR=$work/$target/prefix/lib" "${@:4}" >"$folder.log"
@@ -93,7 +94,6 @@ configure() {
 library() {
   local folder="$work/$1/$2"
   [[ -e $folder/complete ]] && return
-  mkdir -p "$work/$1"
   configure "$folder" "$3" "$1" -DBUILD_SHARED_LIBS=OFF -DBUILD_TESTING=OFF -DCMAKE_POSITION_INDEPENDENT_CODE=ON \
     -DCMAKE_{C,CXX}_VISIBILITY_PRESET=hidden -DCMAKE_POLICY_DEFAULT_CMP0063=NEW "${@:4}"
   cmake --build "$folder" --target install >>"$folder.log"
@@ -113,12 +113,12 @@ more_libraries() {
   library "$1" muparser "$(echo "$work"/sources/muparser-*/)" -DENABLE_{SAMPLES,OPENMP}=OFF
 }
 
-# wheel PROCESSOR PYTHON FOLDER OPTION…: into FOLDER; OPTIONs are pip's.
+# wheel PROCESSOR PYTHON BUILD FOLDER OPTION…: compiled in BUILD, into FOLDER; OPTIONs are pip's.
 wheel() {
   local target="$1-linux-gnu.2.17" environment name licences=()
   environment="$(environment "$2")"
   local options=(
-    "build-dir=$work/$target/build-$2"
+    "build-dir=$3"
     "cmake.define.CMAKE_TOOLCHAIN_FILE=$PWD/packaging/zig.cmake"
     "cmake.define.CMAKE_FIND_ROOT_PATH=$work/$target/prefix"
     "cmake.define.RASTRUM_ZIG=$(zig)"
@@ -128,12 +128,12 @@ wheel() {
   )
   rm -rf "$work/$target/wheel"
   _PYTHON_HOST_PLATFORM="linux-$1" SETUPTOOLS_EXT_SUFFIX=".cpython-${2/./}-$1-linux-gnu.so" CMAKE_GENERATOR=Ninja \
-    "$environment/bin/pip" wheel . -q --no-deps --disable-pip-version-check --no-build-isolation -w "$work/$target/wheel" "${options[@]/#/-C}" "${@:4}"
+    "$environment/bin/pip" wheel . -q --no-deps --disable-pip-version-check --no-build-isolation -w "$work/$target/wheel" "${options[@]/#/-C}" "${@:5}"
   for name in "${sources[@]}"; do licences+=("$name=$(echo "$work/sources/$name"-*/debian/copyright)"); done
   licences+=("libc++=$(dirname "$(zig)")/lib/libcxx/LICENSE.TXT")
   licences+=("nanobind=$(echo "$environment"/lib/python*/site-packages/nanobind-*/licenses/LICENSE)")
   "$environment/bin/python" packaging/wheel_licences.py "$work/$target/wheel"/*.whl "${licences[@]}"
-  PATH="$environment/bin:$PATH" auditwheel repair --plat auto -w "$3" "$work/$target/wheel"/*.whl
+  PATH="$environment/bin:$PATH" auditwheel repair --plat auto -w "$4" "$work/$target/wheel"/*.whl
 }
 
 make_wheels() {
@@ -144,7 +144,7 @@ make_wheels() {
     more_libraries "$processor-linux-gnu.2.17"
     for python in "${pythons[@]}"; do
       python_of "$python" >/dev/null || { echo "note: there is no Python $python here, so no wheel for it"; continue; }
-      wheel "$processor" "$python" "$out"
+      wheel "$processor" "$python" "$work/$processor-linux-gnu.2.17/build-$python" "$out"
     done
   done
 }
@@ -399,7 +399,7 @@ make_daily() {
   local folder="$work/daily"
   rm -rf "$folder"
   needed_libraries "$(uname -m)-linux-gnu.2.17"
-  wheel "$(uname -m)" 3.11 "$folder" "-Ccmake.define.CMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG -DRASTRUM_ONE_SIMD_TARGET"
+  wheel "$(uname -m)" 3.11 "$folder/build" "$folder" "-Ccmake.define.CMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG -DRASTRUM_ONE_SIMD_TARGET"
   shapes "$folder/shapes" build/release/apps/rastrum/rastrum
   "$(python_of 3.11)" -m venv "$folder/python"
   "$folder/python/bin/pip" install -q --disable-pip-version-check "$folder"/*.whl

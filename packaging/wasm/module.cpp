@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The module for browsers has this beside rastrum.h: scenes that the library itself makes, and
 // views by name.
+#include <algorithm>
 #include <memory>
 #include <string_view>
 #include <utility>

@@ -1,11 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rastrum in JavaScript: the functions of rastrum.h with arrays and strings of JavaScript. The same scene gives the same
 // bytes as everywhere else. rastrum.d.ts has the types, docs/browser.md is the guide.
-import { Wasi } from './wasi.mjs';
+import { plain, Wasi } from './wasi.mjs';
 
 const NUMBERS = [Float32Array, Float64Array, Uint8Array, Int8Array, Uint16Array, Int16Array, Uint32Array, Int32Array,
   BigUint64Array, BigInt64Array]; // in the order of RASTRUM_FLOAT32, …
 const PER = { vertex: 0, corner: 1, face: 2, mesh: 3 };
+
+/** The array as `count` numbers. */
+function numbers(Numbers, array, count, name) {
+  if (array.length !== count) throw new RastrumError(`${name}: ${array.length} numbers, not ${count}`, 1);
+  return Numbers.from(array);
+}
 
 /** A failure; `status` is that of rastrum.h. */
 export class RastrumError extends Error {
@@ -48,16 +54,19 @@ class Rastrum {
   /** Reads the file `name` of `files`, an object or Map from names to Uint8Arrays, beside which its companions lie.
    * Edges sharper than `creaseDegrees` stay sharp where a mesh has no normals. */
   read(files, name, { creaseDegrees = 40 } = {}) {
-    this.#wasi.files = files instanceof Map ? files : new Map(Object.entries(files));
+    const given = files instanceof Map ? files : new Map(Object.entries(files));
+    for (const [file, bytes] of given)
+      if (!(bytes instanceof Uint8Array)) throw new RastrumError(`${file}: its bytes must be a Uint8Array`, 1);
+    this.#wasi.files = new Map([...given].map(([file, bytes]) => [plain(file), bytes]));
     try {
-      return new Scene(this, this._made('rastrum_wasm_read', `/${name}`, creaseDegrees));
+      return new Scene(this, this._made('rastrum_wasm_read', `/${plain(name)}`, creaseDegrees), true);
     } finally {
       this.#wasi.files = new Map();
     }
   }
 
   /** Makes a shape: `teapot`, `boxes?count=8`, … */
-  shape(spec) { return new Scene(this, this._made('rastrum_wasm_shape', spec)); }
+  shape(spec) { return new Scene(this, this._made('rastrum_wasm_shape', spec), true); }
 
   /** A scene without anything, for arrays. */
   scene() { return new Scene(this, this._made('rastrum_scene_new')); }
@@ -72,15 +81,15 @@ class Rastrum {
     try {
       const set = (name, ...values) => this._call(`rastrum_frame_${name}`, frame, ...values);
       if (shader !== undefined) set('set_shader', shader);
-      if (background !== undefined) set('set_background', Float32Array.from(background));
-      if (samples !== undefined) set('set_samples', samples);
-      if (opacity !== undefined) set('set_opacity', opacity);
+      if (background !== undefined) set('set_background', numbers(Float32Array, background, 4, 'background'));
+      if (samples !== undefined) set('set_samples', Number(samples));
+      if (opacity !== undefined) set('set_opacity', Number(opacity));
       if (shadows !== undefined) set('set_shadows', shadows ? 1 : 0);
       if (cull !== undefined) set('set_cull', ['none', 'back', 'front'].indexOf(cull));
       if (lights === 'studio') this._call('rastrum_wasm_add_studio', frame);
       else for (const l of lights)
-        set('add_light', ['ambient', 'directional', 'point'].indexOf(l.kind), l.vector && Float64Array.from(l.vector),
-          Float32Array.from(l.color ?? [1, 1, 1]), l.intensity ?? 1, l.ofCamera ? 1 : 0);
+        set('add_light', ['ambient', 'directional', 'point'].indexOf(l.kind), l.vector && numbers(Float64Array, l.vector, 3, 'vector'),
+          numbers(Float32Array, l.color ?? [1, 1, 1], 3, 'color'), l.intensity ?? 1, l.ofCamera ? 1 : 0);
       for (const target of targets) {
         const [type, channels] = this._target(target);
         const bytes = width * height * channels * NUMBERS[type].BYTES_PER_ELEMENT;
@@ -113,12 +122,12 @@ class Rastrum {
   // What the classes below share.
 
   _text(at) {
-    const bytes = new Uint8Array(this.#c.memory.buffer, at);
+    const bytes = new Uint8Array(this.#c.memory.buffer, at >>> 0);
     return new TextDecoder().decode(bytes.slice(0, bytes.indexOf(0)));
   }
 
   _allocate(bytes) {
-    const at = this.#c.malloc(Math.max(bytes, 1));
+    const at = this.#c.malloc(Math.max(bytes, 1)) >>> 0;
     if (at === 0) throw new RastrumError(`there is no memory for ${bytes} bytes`, 6);
     return at;
   }
@@ -141,6 +150,7 @@ class Rastrum {
         if (value === undefined || value === null) return 0;
         if (typeof value === 'number') return value;
         const array = typeof value === 'string' ? new TextEncoder().encode(`${value}\0`) : value;
+        if (!ArrayBuffer.isView(array)) throw new RastrumError(`${name}: cannot take ${value}`, 1);
         copies.push(this._copy(array));
         return copies.at(-1);
       }));
@@ -157,7 +167,7 @@ class Rastrum {
   /** Calls a function that makes a handle. */
   _made(name, ...args) {
     const handle = this._value(name, args);
-    if (handle === 0) throw new RastrumError(this._text(this.#c.rastrum_error_text()), 4);
+    if (handle === 0) throw new RastrumError(this._text(this.#c.rastrum_error_text()), this.#c.rastrum_error_status());
     return handle;
   }
 
@@ -178,10 +188,11 @@ class Rastrum {
 
 /** What is drawn. Its arrays are copies; free() gives the memory back. */
 class Scene {
-  #rastrum; #arrays = [];
+  #rastrum; #arrays = []; #isRead;
 
-  constructor(rastrum, handle) {
+  constructor(rastrum, handle, isRead = false) {
     this.#rastrum = rastrum;
+    this.#isRead = isRead;
     this.handle = handle;
   }
 
@@ -198,6 +209,7 @@ class Scene {
 
   /** Adds triangles, by indices or three positions each, and returns the number of the instance. */
   addMesh(positions, indices, { normals, colors, per = 'vertex', color, opacity, transform } = {}) {
+    if (this.#isRead) throw new RastrumError('a scene of a file or a shape takes no meshes', 1);
     const out = this.#rastrum._allocate(4);
     let instance;
     try {
@@ -208,10 +220,15 @@ class Scene {
     }
     const set = (what, ...values) => this.#rastrum._call(`rastrum_instance_set_${what}`, this.handle, instance, ...values);
     if (normals) set('normals', this.#array(normals, 3), PER[per]);
-    if (colors) set('colors', this.#array(colors, colors.length === positions.length ? 3 : 4), PER[per]);
-    if (color) set('color', Float32Array.from(color));
+    if (colors) {
+      const vertices = positions.length / 3, corners = indices?.length ?? vertices;
+      const channels = colors.length / { vertex: vertices, corner: corners, face: corners / 3, mesh: 1 }[per];
+      if (channels !== 3 && channels !== 4) throw new RastrumError(`colors: ${colors.length} numbers, not 3 or 4 for each ${per}`, 1);
+      set('colors', this.#array(colors, channels), PER[per]);
+    }
+    if (color) set('color', numbers(Float32Array, color, 4, 'color'));
     if (opacity !== undefined) set('opacity', opacity);
-    if (transform) set('transform', Float64Array.from(transform));
+    if (transform) set('transform', numbers(Float64Array, transform, 16, 'transform'));
     return instance;
   }
 
@@ -239,8 +256,13 @@ class Camera {
   constructor(rastrum, handle, { eye, target = [0, 0, 0], up = [0, 1, 0], fovDegrees }) {
     this.#rastrum = rastrum;
     this.handle = handle;
-    if (eye) this.#call('rastrum_camera_look_at', ...[eye, target, up].map((v) => Float64Array.from(v)));
-    if (fovDegrees !== undefined) this.#call('rastrum_camera_set_perspective', (fovDegrees * Math.PI) / 180);
+    try {
+      if (eye) this.#call('rastrum_camera_look_at', ...[eye, target, up].map((v) => numbers(Float64Array, v, 3, 'a place')));
+      if (fovDegrees !== undefined) this.#call('rastrum_camera_set_perspective', (fovDegrees * Math.PI) / 180);
+    } catch (error) {
+      this.free();
+      throw error;
+    }
   }
 
   #call(name, ...args) { this.#rastrum._call(name, this.handle, ...args); }

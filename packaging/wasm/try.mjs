@@ -10,7 +10,7 @@ function equal(is, shouldBe, what) {
   if (is !== shouldBe) throw new Error(`${what}: ${is}, not ${shouldBe}`);
 }
 
-/** Draws as the program does by default. */
+/** Draws as the program does with `--look plain`. */
 function draw(rastrum, scene, options = {}) {
   const camera = rastrum.camera();
   try {
@@ -83,24 +83,27 @@ const checks = {
   },
 
   async errors(rastrum) {
-    const refused = (f, words) => {
+    const refused = (f, words, status) => {
       try {
         f();
       } catch (error) {
-        if (error instanceof RastrumError && error.message.includes(words)) return report.passed.push(error.message);
-        throw error;
+        if (!(error instanceof RastrumError) || !error.message.includes(words)) throw error;
+        equal(error.status, status, `${words}: the status`);
+        return report.passed.push(error.message);
       }
       throw new Error(`not refused: ${words}`);
     };
-    refused(() => rastrum.read({ 'broken.obj': text('v 0 0 0\nf 1 2 3\n') }, 'broken.obj'), 'broken.obj:2');
-    refused(() => rastrum.read({ 'short.ply': text('ply\nformat ascii 1.0\n') }, 'short.ply'), 'short.ply');
-    refused(() => rastrum.read({ 't.gltf': tetrahedra()['t.gltf']['t.gltf'] }, 't.gltf'), 't.bin');
-    refused(() => rastrum.read({}, 'none.obj'), 'none.obj');
-    refused(() => rastrum.read({ 'p.glb': new Uint8Array(100) }, 'p.glb'), 'p.glb');
-    refused(() => rastrum.shape('teapott'), 'teapott');
+    refused(() => rastrum.read({ 'broken.obj': text('v 0 0 0\nf 1 2 3\n') }, 'broken.obj'), 'broken.obj:2', 4);
+    refused(() => rastrum.read({ 'short.ply': text('ply\nformat ascii 1.0\n') }, 'short.ply'), 'short.ply', 4);
+    refused(() => rastrum.read({ 't.gltf': tetrahedra()['t.gltf']['t.gltf'] }, 't.gltf'), 't.bin', 3);
+    refused(() => rastrum.read({}, 'none.obj'), 'none.obj', 3);
+    refused(() => rastrum.read({ 'p.glb': new Uint8Array(100) }, 'p.glb'), 'p.glb', 4);
+    refused(() => rastrum.shape('teapott'), 'teapott', 1);
     const scene = rastrum.scene();
     scene.addMesh(positions, Uint32Array.of(0, 1, 7));
-    refused(() => drawn(rastrum, scene), '7');
+    refused(() => drawn(rastrum, scene), '7', 1);
+    refused(() => rastrum.scene().addMesh(positions, indices, { per: 'face', colors: new Float32Array(5) }), 'colors', 1);
+    refused(() => rastrum.camera({ eye: [1, 2] }), '2 numbers', 1);
   },
 
   // A texture, which goes through libpng: a picture of one pixel.

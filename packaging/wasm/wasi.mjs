@@ -5,6 +5,16 @@ const OK = 0, BAD_FILE = 8, INVALID = 28, IS_FOLDER = 31, NO_ENTRY = 44, NO_SUCH
 const DEVICE = 2, FOLDER = 3, FILE = 4;
 const ROOT = 3; // the one folder that is open from the start: "/"
 
+/** A path without '.', '..' and empty parts. */
+export function plain(path) {
+  const parts = [];
+  for (const part of path.split('/')) {
+    if (part === '..') parts.pop();
+    else if (part !== '' && part !== '.') parts.push(part);
+  }
+  return parts.join('/');
+}
+
 /** Imports of the module, whose files lie in `files`, a Map from names to Uint8Arrays. */
 export class Wasi {
   /** @type {WebAssembly.Memory} */ memory;
@@ -12,27 +22,24 @@ export class Wasi {
   #open = new Map(); // descriptor → { bytes, at }
 
   get imports() {
-    const calls = this.#calls();
-    // Other calls are refused as a system without them does.
-    return new Proxy(calls, { get: (all, name) => all[name] ?? (() => NO_SUCH_CALL) });
+    // WebAssembly passes addresses as numbers with a sign. Calls that are not here are refused as a system without them does.
+    const unsigned = (call) => (...values) => call(...values.map((v) => (typeof v === 'number' ? v >>> 0 : v)));
+    return new Proxy(this.#calls(), { get: (all, name) => unsigned(all[name] ?? (() => NO_SUCH_CALL)) });
   }
 
   #view() { return new DataView(this.memory.buffer); }
   #bytes(at, size) { return new Uint8Array(this.memory.buffer, at, size); }
 
-  /** A file by its path; one that was chosen alone is found without its folder. */
+  /** A file by its path. One that was chosen alone is found without its folder, and one whose letters differ in case is found, too. */
   #find(at, size) {
-    const path = new TextDecoder().decode(this.#bytes(at, size));
-    const parts = [];
-    for (const part of path.split('/')) {
-      if (part === '..') parts.pop();
-      else if (part !== '' && part !== '.') parts.push(part);
-    }
-    if (parts.length === 0) return FOLDER;
-    const name = parts.join('/');
+    const name = plain(new TextDecoder().decode(this.#bytes(at, size)));
+    if (name === '') return FOLDER;
     if (this.files.has(name)) return this.files.get(name);
-    for (const known of this.files.keys()) if (known.startsWith(`${name}/`)) return FOLDER;
-    return this.files.get(parts.at(-1));
+    const names = [...this.files.keys()];
+    if (names.some((known) => known.startsWith(`${name}/`))) return FOLDER;
+    const last = name.split('/').at(-1);
+    const alike = (wanted) => names.find((known) => known.toLowerCase() === wanted.toLowerCase());
+    return this.files.get(names.find((known) => known === last) ?? alike(name) ?? alike(last));
   }
 
   #stat(at, found) {

@@ -13,17 +13,23 @@
 namespace rastrum::c {
 namespace {
 
-std::string& last_error() noexcept {
-  thread_local std::string text;
-  return text;
+struct Failure {
+  rastrum_status status = RASTRUM_OK;
+  std::string text;
+};
+Failure& last_failure() noexcept {
+  thread_local Failure failure;
+  return failure;
 }
 
 rastrum_status failed(rastrum_status status, const char* sentence) noexcept {
+  Failure& last = last_failure();
+  last.status = status;
   try {
-    last_error() = sentence;
+    last.text = sentence;
   } catch (...) {
-    last_error().clear();
-    last_error() = "no memory left";  // short enough to need no memory
+    last.text.clear();
+    last.text = "no memory left";  // short enough to need no memory
   }
   return status;
 }
@@ -71,7 +77,11 @@ rastrum_status status_of_exception() noexcept {
 extern "C" {
 
 const char* rastrum_error_text() {
-  return last_error().c_str();
+  return last_failure().text.c_str();
+}
+
+rastrum_status rastrum_error_status() {
+  return last_failure().status;
 }
 
 const char* rastrum_version() {

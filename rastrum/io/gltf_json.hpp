@@ -78,10 +78,12 @@ class Json {
       fail("does not fit float32");
     return static_cast<float>(x);
   }
+  /// The largest count that a double and a size both hold exactly.
+  static constexpr double kMostCount = sizeof(std::size_t) < 8 ? 4294967295.0 : 9007199254740992.0;
   /// A whole number ≥ 0, which JSON may write as 1.0 or 1e0.
   [[nodiscard]] std::size_t count() const {
     const double x = number();
-    if (x < 0 || x != std::floor(x) || x > 9007199254740992.0)
+    if (x < 0 || x != std::floor(x) || x > kMostCount)
       fail("must be a whole number that is not negative");
     return static_cast<std::size_t>(x);
   }

@@ -85,6 +85,7 @@ MappedFile::MappedFile(const std::filesystem::path& file, Kind kind) : file_(fil
     copy(d.fd);
     return;
   }
+  if (!std::in_range<std::size_t>(info->bytes)) fail(file, EFBIG);
   size_ = static_cast<std::size_t>(info->bytes);
   if (size_ == 0) return;  // systems refuse empty mappings
   data_ = map_file(d.fd, size_);

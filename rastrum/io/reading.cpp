@@ -12,8 +12,9 @@ namespace rastrum::io {
 namespace fs = std::filesystem;
 
 void Budget::take(std::uint64_t count, std::uint64_t size) {
-  constexpr std::uint64_t kMost = std::numeric_limits<std::uint64_t>::max();
-  take(size != 0 && count > kMost / size ? kMost : count * size);
+  constexpr std::uint64_t kMost = std::numeric_limits<std::size_t>::max();
+  const bool fits = size == 0 || count <= kMost / size;
+  take(fits ? count * size : std::numeric_limits<std::uint64_t>::max());
 }
 
 void Budget::take(std::uint64_t bytes) {

@@ -130,6 +130,7 @@ TEST(CRefusals, Arrays) {
 TEST(CRefusals, Frames) {
   EXPECT_EQ(rastrum_frame_new(0, 5), nullptr);
   EXPECT_TRUE(holds(rastrum_error_text(), "image size 0x5"));
+  EXPECT_EQ(rastrum_error_status(), RASTRUM_INVALID_ARGUMENT);
   const CPicture p = square();
   rastrum_frame* const frame = p.frame.get();
   const float nan4[4] = {NAN, 0, 0, 0};
@@ -215,6 +216,7 @@ TEST(CRefusals, EachThreadHasItsSentence) {
   const std::string here = rastrum_error_text();
   std::thread([&] {
     EXPECT_STREQ(rastrum_error_text(), "");
+    EXPECT_EQ(rastrum_error_status(), RASTRUM_OK);
     expect_refused(rastrum_frame_set_shader(p.frame.get(), "none"), "no shader is called 'none'");
   }).join();
   EXPECT_EQ(rastrum_error_text(), here);
