@@ -69,7 +69,7 @@ int flushed(int status) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  rastrum::cli::prepare_terminal();
+  rastrum::cli::prepare_streams();
   rastrum::cli::end_cleanly_on_signals();
   rastrum::io::remember_files_read();
   rastrum::cli::Parser app("rastrum", "Rastrum draws triangle meshes and terrains in software.");

@@ -41,14 +41,8 @@ void wait_and_end() {
 }  // namespace
 
 void end_cleanly_on_signals() {
-  int ends[2];
-  if (::pipe(ends) != 0) return;
-  for (int i = 0; i < 2; ++i) {
-    // Standard input and output may be closed; the ends must not take their places.
-    wake[i] = ::fcntl(ends[i], F_DUPFD_CLOEXEC, 3);
-    ::close(ends[i]);
-  }
-  if (wake[0] < 0 || wake[1] < 0) return;
+  if (::pipe(wake) != 0) return;
+  for (const int end : wake) ::fcntl(end, F_SETFD, FD_CLOEXEC);
   std::thread(wait_and_end).detach();
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
     struct sigaction action = {};

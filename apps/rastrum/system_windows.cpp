@@ -27,7 +27,7 @@ BOOL WINAPI on_event(DWORD /*event*/) {
 
 }  // namespace
 
-void prepare_terminal() {
+void prepare_streams() {
   ::SetConsoleOutputCP(CP_UTF8);
   const HANDLE terminal = ::GetStdHandle(STD_ERROR_HANDLE);
   DWORD mode = 0;

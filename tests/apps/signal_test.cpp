@@ -89,6 +89,16 @@ TEST_F(Signals, WhatWasIgnoredStaysIgnored) {
   EXPECT_EQ(files(), (Args("held.npy p.png")));
 }
 
+TEST_F(Signals, NoPipeTakesThePlaceOfAClosedStream) {
+  must("render builtin:sphere --size 64x64 -o beside.png");
+  const Outcome r = shell(
+      "timeout 60 $RASTRUM render builtin:sphere --size 64x64 -o p.png <&- >&- 2>&-; echo $?;"
+      "$RASTRUM --version 2>&1 >&- | tail -n 1");
+  EXPECT_TRUE(r.out.starts_with("0\n")) << r.out;
+  EXPECT_EQ(read("p.png"), read("beside.png"));
+  EXPECT_NE(r.out.find("standard output: cannot be written"), std::string::npos) << r.out;
+}
+
 TEST_F(Signals, WhatKillLeftIsRemovedByTheNextRun) {
   (void)ended_by(SIGKILL, start_held());
   EXPECT_GE(files().size(), 3U) << "nobody can clean up after SIGKILL";

@@ -8,8 +8,9 @@
 
 namespace rastrum::cli {
 
-/// Messages are UTF-8, and the progress line uses escape sequences.
-void prepare_terminal();
+/// Call it before any file is opened: no file takes the place of a closed standard stream. Messages
+/// are UTF-8, and the progress line uses escape sequences.
+void prepare_streams();
 
 /// The process's peak memory as the system counts it.
 [[nodiscard]] double peak_bytes();
