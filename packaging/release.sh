@@ -3,7 +3,7 @@
 # Makes packages that ask nothing of the system, in out/release (`./dev release`).
 #
 # usage: packaging/release.sh [PART…]     (all parts without a PART)
-#   wheels    Python's, for x86-64 and AArch64 with glibc 2.17 or later
+#   wheels    Python's, for x86-64 and AArch64 with glibc 2.17 or later; for Windows and macOS, where nobody has tried them
 #   programs  `rastrum` as one static file, for both; for Windows; for macOS, where nobody has run it
 #   try       all but that, where they have nothing else (root; qemu-user-static for AArch64; wine64)
 #   sdist     the source package for Python, built and tried without network
@@ -113,27 +113,70 @@ more_libraries() {
   library "$1" muparser "$(echo "$work"/sources/muparser-*/)" -DENABLE_{SAMPLES,OPENMP}=OFF
 }
 
-# wheel PROCESSOR PYTHON BUILD FOLDER OPTION…: compiled in BUILD, into FOLDER; OPTIONs are pip's.
+# For systems that are not here.
+libraries_elsewhere() {
+  local target
+  for target in x86_64-windows-gnu aarch64-macos; do
+    needed_libraries "$target"
+    more_libraries "$target"
+  done
+}
+
+# wheel TARGET PLATFORM PYTHON BUILD FOLDER OPTION…: compiled in BUILD, into FOLDER; PLATFORM is Python's name of zig's TARGET;
+# OPTIONs are pip's.
 wheel() {
-  local target="$1-linux-gnu.2.17" environment name licences=()
-  environment="$(environment "$2")"
+  local target="$1" platform="$2" environment name zig licences=()
+  environment="$(environment "$3")"
+  zig="$(zig)"
   local options=(
-    "build-dir=$3"
+    "build-dir=$4"
     "cmake.define.CMAKE_TOOLCHAIN_FILE=$PWD/packaging/zig.cmake"
     "cmake.define.CMAKE_FIND_ROOT_PATH=$work/$target/prefix"
-    "cmake.define.RASTRUM_ZIG=$(zig)"
+    "cmake.define.RASTRUM_ZIG=$zig"
     "cmake.define.RASTRUM_ZIG_TARGET=$target"
     cmake.define.RASTRUM_TBB=OFF
     cmake.define.CMAKE_DISABLE_FIND_PACKAGE_{OpenEXR,muparser}=OFF
   )
   rm -rf "$work/$target/wheel"
-  _PYTHON_HOST_PLATFORM="linux-$1" SETUPTOOLS_EXT_SUFFIX=".cpython-${2/./}-$1-linux-gnu.so" CMAKE_GENERATOR=Ninja \
-    "$environment/bin/pip" wheel . -q --no-deps --disable-pip-version-check --no-build-isolation -w "$work/$target/wheel" "${options[@]/#/-C}" "${@:5}"
+  _PYTHON_HOST_PLATFORM="$platform" SETUPTOOLS_EXT_SUFFIX=".cpython-${3/./}-${target%%-*}-linux-gnu.so" CMAKE_GENERATOR=Ninja \
+    "$environment/bin/pip" wheel . -q --no-deps --disable-pip-version-check --no-build-isolation -w "$work/$target/wheel" "${options[@]/#/-C}" "${@:6}"
   for name in "${sources[@]}"; do licences+=("$name=$(echo "$work/sources/$name"-*/debian/copyright)"); done
-  licences+=("libc++=$(dirname "$(zig)")/lib/libcxx/LICENSE.TXT")
+  licences+=("libc++=$(dirname "$zig")/lib/libcxx/LICENSE.TXT")
+  [[ $target != *-windows-* ]] || licences+=("mingw-w64=$(dirname "$zig")/lib/libc/mingw/COPYING")
   licences+=("nanobind=$(echo "$environment"/lib/python*/site-packages/nanobind-*/licenses/LICENSE)")
   "$environment/bin/python" packaging/wheel_licences.py "$work/$target/wheel"/*.whl "${licences[@]}"
-  PATH="$environment/bin:$PATH" auditwheel repair --plat auto -w "$4" "$work/$target/wheel"/*.whl
+  if [[ $platform == linux-* ]]; then
+    PATH="$environment/bin:$PATH" auditwheel repair --plat auto -w "$5" "$work/$target/wheel"/*.whl
+  else
+    mv "$work/$target/wheel"/*.whl "$5"
+  fi
+}
+
+# stable_wheel TARGET PLATFORM: a wheel for a system whose Python is not here. The headers are those of this system's Python 3.12
+# with another pyconfig.h. Windows also wants a library of the stable ABI's names.
+stable_wheel() {
+  local folder="$work/$1/python" source
+  fetch_sources trixie 3.13t-source python3.13
+  source="$(echo "$work"/3.13t-source/python3*/PC)"
+  rm -rf "$folder"
+  mkdir -p "$work/$1"
+  cp -r "$("$(python_of 3.12)" -c "import sysconfig; print(sysconfig.get_path('include'))")" "$folder"
+  local options=(
+    "Python_INCLUDE_DIR=$folder"
+    # The build cannot run the program that writes it.
+    "RASTRUM_OUTPUTS_PYI=$work/x86_64-linux-gnu.2.17/build-3.12/python/site/rastrum/_outputs.pyi"
+  )
+  if [[ $1 == *-windows-* ]]; then
+    cp "$source/pyconfig.h.in" "$folder/pyconfig.h"
+    (echo EXPORTS && sed -nE 's/^EXPORT_FUNC\((.*)\)$/\1/p; s/^EXPORT_DATA\((.*)\)$/\1 DATA/p' "$source/python3dll.c") >"$folder/python3.def"
+    "$(zig)" dlltool -m i386:x86-64 -D python3.dll -d "$folder/python3.def" -l "$folder/libpython3.a"
+    # CMake asks for a library of this version, which is not linked. Modules are called .pyd there.
+    ln -s libpython3.a "$folder/libpython312.a"
+    options+=("Python_SABI_LIBRARY=$folder/libpython3.a" "Python_LIBRARY=$folder/libpython312.a" SKBUILD_SOSABI=)
+  else
+    cp packaging/pyconfig_macos.h "$folder/pyconfig.h"
+  fi
+  wheel "$1" "$2" 3.12 "$work/$1/build-3.12" "$out" "${options[@]/#/-Ccmake.define.}"
 }
 
 make_wheels() {
@@ -144,9 +187,13 @@ make_wheels() {
     more_libraries "$processor-linux-gnu.2.17"
     for python in "${pythons[@]}"; do
       python_of "$python" >/dev/null || { echo "note: there is no Python $python here, so no wheel for it"; continue; }
-      wheel "$processor" "$python" "$work/$processor-linux-gnu.2.17/build-$python" "$out"
+      wheel "$processor-linux-gnu.2.17" "linux-$processor" "$python" "$work/$processor-linux-gnu.2.17/build-$python" "$out"
     done
   done
+  python_of 3.12 >/dev/null || { echo "note: there is no Python 3.12 here, so no wheels for Windows and macOS"; return; }
+  libraries_elsewhere
+  stable_wheel x86_64-windows-gnu win-amd64
+  stable_wheel aarch64-macos macosx-15.0-arm64
 }
 
 # program TARGET NAME [SUFFIX]: NAME in $out; SUFFIX is what the system adds to a program's name.
@@ -166,10 +213,7 @@ make_programs() {
     more_libraries "$target"
     program "$target" "rastrum-linux-$processor"
   done
-  for target in x86_64-windows-gnu aarch64-macos; do
-    needed_libraries "$target"
-    more_libraries "$target"
-  done
+  libraries_elsewhere
   program x86_64-windows-gnu rastrum-windows-x86_64.exe .exe
   program aarch64-macos rastrum-macos-arm64
 }
@@ -399,7 +443,7 @@ make_daily() {
   local folder="$work/daily"
   rm -rf "$folder"
   needed_libraries "$(uname -m)-linux-gnu.2.17"
-  wheel "$(uname -m)" 3.11 "$folder/build" "$folder" "-Ccmake.define.CMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG -DRASTRUM_ONE_SIMD_TARGET"
+  wheel "$(uname -m)-linux-gnu.2.17" "linux-$(uname -m)" 3.11 "$folder/build" "$folder" "-Ccmake.define.CMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG -DRASTRUM_ONE_SIMD_TARGET"
   shapes "$folder/shapes" build/release/apps/rastrum/rastrum
   "$(python_of 3.11)" -m venv "$folder/python"
   "$folder/python/bin/pip" install -q --disable-pip-version-check "$folder"/*.whl

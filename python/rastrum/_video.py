@@ -4,6 +4,7 @@
 import re
 import shutil
 import subprocess
+import sys
 
 from ._errors import ArgumentError, FileError, UnsupportedError
 from ._files import refuse_inputs, whole
@@ -56,6 +57,8 @@ def _pil(path):
 
 
 def _ffmpeg(path):
+    if sys.platform == "win32":  # no child can write to an open file there
+        raise UnsupportedError(f"{path}: an .mp4 is not written on Windows: write numbered pictures, as in frame_%04d.png")
     found = shutil.which("ffmpeg")
     if found is None:
         try:

@@ -2,7 +2,6 @@
 #include "ranks.hpp"
 
 #include <array>
-#include <csignal>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -17,8 +16,6 @@
 #include <nanobind/stl/string_view.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
-
-#include <unistd.h>
 
 #include <rastrum/stop.hpp>
 
@@ -118,51 +115,6 @@ void PythonRanks::exchange(std::span<const std::span<const std::byte>> to,
   const auto out = views_of(to);
   const auto in = views_of(from);
   ranks_.attr("exchange")(out.second, in.second);
-}
-
-namespace {
-
-struct sigaction before;
-bool deferring = false;  // of the main thread alone
-SignalFlag deferred;
-
-void on_deferred_interrupt(int) {
-  deferred.came = true;
-}
-
-}  // namespace
-
-void DeferredInterrupt::enter() {
-  if (gettid() != getpid() || deferring) return;
-  sigaction(SIGINT, nullptr, &before);
-  if ((before.sa_flags & SA_SIGINFO) == 0 &&
-      (before.sa_handler == SIG_DFL || before.sa_handler == SIG_IGN))
-    return;
-  deferred.came = false;
-  struct sigaction now {};
-  now.sa_handler = on_deferred_interrupt;
-  sigemptyset(&now.sa_mask);
-  now.sa_flags = SA_RESTART;
-  deferring = installed_ = sigaction(SIGINT, &now, nullptr) == 0;
-}
-
-void DeferredInterrupt::exit() {
-  if (!installed_) return;
-  sigaction(SIGINT, &before, nullptr);
-  deferring = installed_ = false;
-  if (deferred.came.exchange(false)) PyErr_SetInterrupt();
-}
-
-void DeferredInterrupt::raise() {
-  if (!installed_) return;
-  // A signal that comes after this stops the next frame.
-  if (deferred.came.exchange(false)) PyErr_SetInterrupt();
-  // Also handles signals that came just before raise() began.
-  if (PyErr_CheckSignals() != 0) throw nb::python_error();
-}
-
-StopToken DeferredInterrupt::token() const {
-  return installed_ ? StopToken(deferred) : StopToken{};
 }
 
 namespace {
