@@ -37,8 +37,8 @@ fs::path this_program() {
 }  // namespace
 
 void prepare_streams() {
-  // What is opened takes the lowest free number, and messages would be written into it. Writing to
-  // what is only read fails as writing to a closed stream does.
+  // A file that is opened takes the lowest free number, and messages would be written into it.
+  // Writing to a file that is only read fails as writing to a closed stream does.
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (::fcntl(stream, F_GETFD) < 0)
       static_cast<void>(::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY));
