@@ -139,7 +139,7 @@ wheel() {
   )
   rm -rf "$work/$target/wheel"
   _PYTHON_HOST_PLATFORM="$platform" SETUPTOOLS_EXT_SUFFIX=".cpython-${3/./}-${target%%-*}-linux-gnu.so" CMAKE_GENERATOR=Ninja \
-    "$environment/bin/pip" wheel . -q --no-deps --disable-pip-version-check --no-build-isolation -w "$work/$target/wheel" "${options[@]/#/-C}" "${@:6}"
+    "$environment/bin/pip" wheel . -q --no-deps --disable-pip-version-check --no-build-isolation -w "$work/$target/wheel" "${options[@]/#/--config-settings=}" "${@:6}"
   for name in "${sources[@]}"; do licences+=("$name=$(echo "$work/sources/$name"-*/debian/copyright)"); done
   licences+=("libc++=$(dirname "$zig")/lib/libcxx/LICENSE.TXT")
   [[ $target != *-windows-* ]] || licences+=("mingw-w64=$(dirname "$zig")/lib/libc/mingw/COPYING")
@@ -176,7 +176,7 @@ stable_wheel() {
   else
     cp packaging/pyconfig_macos.h "$folder/pyconfig.h"
   fi
-  wheel "$1" "$2" 3.12 "$work/$1/build-3.12" "$out" "${options[@]/#/-Ccmake.define.}"
+  wheel "$1" "$2" 3.12 "$work/$1/build-3.12" "$out" "${options[@]/#/--config-settings=cmake.define.}"
 }
 
 make_wheels() {
@@ -443,7 +443,7 @@ make_daily() {
   local folder="$work/daily"
   rm -rf "$folder"
   needed_libraries "$(uname -m)-linux-gnu.2.17"
-  wheel "$(uname -m)-linux-gnu.2.17" "linux-$(uname -m)" 3.11 "$folder/build" "$folder" "-Ccmake.define.CMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG -DRASTRUM_ONE_SIMD_TARGET"
+  wheel "$(uname -m)-linux-gnu.2.17" "linux-$(uname -m)" 3.11 "$folder/build" "$folder" "--config-settings=cmake.define.CMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG -DRASTRUM_ONE_SIMD_TARGET"
   shapes "$folder/shapes" build/release/apps/rastrum/rastrum
   "$(python_of 3.11)" -m venv "$folder/python"
   "$folder/python/bin/pip" install -q --disable-pip-version-check "$folder"/*.whl
