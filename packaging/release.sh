@@ -36,19 +36,30 @@ python_of() {
   return 1
 }
 
-# Debian 13 has the sources of a Python without the global lock, and no package of it.
+# Debian 13 has the sources of a Python without the global lock, and no package of it. One of Debian's patches loses the folder of
+# that Python's packages.
 python_3_13t() {
   python_of 3.13t >/dev/null && return
   fetch_sources trixie 3.13t-source python3.13
-  (cd "$work"/3.13t-source/python*/ && ./configure -q --disable-gil "--prefix=$work/3.13t" && make -s -j "$(nproc)" &&
-    make -s install) >"$work/3.13t.log" 2>&1 || { tail -n 40 "$work/3.13t.log" >&2; return 1; }
+  (cd "$work"/3.13t-source/python*/ && patch -s -R -p1 <debian/patches/distutils-install-layout.diff &&
+    ./configure -q --disable-gil "--prefix=$work/3.13t" && make -s -j "$(nproc)" && make -s install) >"$work/3.13t.log" 2>&1 ||
+    { tail -n 40 "$work/3.13t.log" >&2; return 1; }
+}
+
+# new_environment PYTHON FOLDER: a virtual environment. Debian's sources of Python have no pip in them, and virtualenv brings one.
+new_environment() {
+  if [[ $1 == *t ]]; then
+    "$(tools)/bin/virtualenv" -q --clear -p "$(python_of "$1")" "$2" >&2
+  else
+    "$(python_of "$1")" -m venv --clear "$2" >&2
+  fi
 }
 
 # environment PYTHON: a virtual environment with what wheels are built with; prints its folder.
 environment() {
   local folder="$work/python-$1"
   if [[ ! -x $folder/bin/auditwheel ]]; then
-    "$(python_of "$1")" -m venv --clear "$folder" >&2
+    new_environment "$1" "$folder"
     "$folder/bin/pip" install -q --disable-pip-version-check -r packaging/requirements.txt "ziglang==$zig_version" >&2
   fi
   echo "$folder"
@@ -430,7 +441,7 @@ make_try() {
   for python in "${pythons[@]}" 3.13; do
     python_of "$python" >/dev/null || { echo "note: there is no Python $python here"; continue; }
     echo "Python $python"
-    "$(python_of "$python")" -m venv --clear "$folder"
+    new_environment "$python" "$folder"
     "$folder/bin/pip" install -q --disable-pip-version-check numpy pytest pillow trimesh
     "$folder/bin/pip" install -q --disable-pip-version-check --no-index --find-links "$out" rastrum
     (cd /tmp && "$folder/bin/python" -m pytest -q -p no:cacheprovider "$OLDPWD/python/tests")
