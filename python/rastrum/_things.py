@@ -218,7 +218,7 @@ class _Thing:
     _has_uv = False
 
     def __init__(self, *, scalars=None, cmap="viridis", clim=None, copy=None, **look):
-        self.__dict__.update(_PLAIN, _look=_r.Look(), _in_place=set())
+        self.__dict__.update(_PLAIN, _look=_r.Look(), _in_place=frozenset())
         for name, value in look.items():
             if name not in _LOOK:
                 self._refuse(name)
@@ -259,12 +259,13 @@ class _Thing:
         with lock_in(_locks):
             if name != "material":  # each scene has its own number for it
                 setattr(self._look, name, made)
-            (self._in_place.discard if fixed or made is value else self._in_place.add)(name)
+            # A new set each time: another thread may be going through the old one.
+            self._in_place = self._in_place - {name} if fixed or made is value else self._in_place | {name}
             object.__setattr__(self, name, value)
 
     def _read_in_place(self):
         """Reads the values again that may have changed in place."""
-        for name in tuple(self._in_place):
+        for name in self._in_place:
             value = getattr(self, name)
             made = _LOOK[name](value, name)  # without the lock: a caller's class may run here
             with lock_in(_locks):

@@ -20,7 +20,8 @@ CAMERA = rr.Camera.look_at((2, 1, 3))
 
 
 class Threads:
-    """Ranks that are threads: each lays its buffers down, all meet, each takes what is its own."""
+    """Ranks that are threads: each lays copies of its buffers down (Python 3.13t loses count of a memoryview that several threads
+    read), all meet, each takes what is its own."""
 
     def __init__(self, size):
         self.size, self.posts, self.barrier = size, [None] * size, threading.Barrier(size, timeout=60)
@@ -64,14 +65,14 @@ class ThreadRank(rr.mpi.Communicator):
         def take(posts):
             if root != self.rank:
                 buffer[:] = posts[root]
-        self._meet(buffer, take)
+        self._meet(bytes(buffer), take)
 
     def exchange_sizes(self, to, received):
         def take(posts):
             into = np.frombuffer(received, np.uint64)
             for r, post in enumerate(posts):
                 into[r] = np.frombuffer(post, np.uint64)[self.rank]
-        self._meet(to, take)
+        self._meet(bytes(to), take)
 
     def exchange(self, to, received):
         def take(posts):
