@@ -95,8 +95,8 @@ const checks = {
     };
     refused(() => rastrum.read({ 'broken.obj': text('v 0 0 0\nf 1 2 3\n') }, 'broken.obj'), 'broken.obj:2', 4);
     refused(() => rastrum.read({ 'short.ply': text('ply\nformat ascii 1.0\n') }, 'short.ply'), 'short.ply', 4);
-    refused(() => rastrum.read({ 't.gltf': tetrahedra()['t.gltf']['t.gltf'] }, 't.gltf'), 't.bin', 3);
-    refused(() => rastrum.read({}, 'none.obj'), 'none.obj', 3);
+    refused(() => rastrum.read({ 't.gltf': tetrahedra()['t.gltf']['t.gltf'] }, 't.gltf'), 't.bin', 2);
+    refused(() => rastrum.read({}, 'none.obj'), 'none.obj', 2);
     refused(() => rastrum.read({ 'p.glb': new Uint8Array(100) }, 'p.glb'), 'p.glb', 4);
     refused(() => rastrum.shape('teapott'), 'teapott', 1);
     const scene = rastrum.scene();

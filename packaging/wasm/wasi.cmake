@@ -6,8 +6,6 @@ set(CMAKE_TRY_COMPILE_TARGET_TYPE STATIC_LIBRARY)
 # readers of PNG and JPEG leave by longjmp.
 set(flags "-mcpu=generic+exception_handling+simd128 -fwasm-exceptions -mllvm -wasm-use-legacy-eh=false")
 string(APPEND flags " -mllvm -wasm-enable-sjlj -D_WASI_EMULATED_MMAN -D_WASI_EMULATED_GETPID -D_WASI_EMULATED_SIGNAL")
-# Sizes are 64 bits wide everywhere else, and no file here is larger than 32 bits can count.
-string(APPEND flags " -Wno-shorten-64-to-32")
 set(CMAKE_C_FLAGS_INIT "${flags}")
 get_filename_component(RASTRUM_ZIG_LIB ${RASTRUM_ZIG} DIRECTORY)
 string(APPEND RASTRUM_ZIG_LIB /lib)
