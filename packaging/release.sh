@@ -401,7 +401,7 @@ try_wheel() {
   local root="$work/root-$1-$2" python environment
   local -A architectures=([x86_64]=amd64 [aarch64]=arm64)
   [[ -e $root/usr/bin/python3 ]] || mmdebstrap --quiet --variant=extract --skip=check/qemu \
-    "--architectures=${architectures[$2]}" --include=python3,libstdc++6 "$1" "$root" >&2
+    "--architectures=${architectures[$2]}" --include=base-files,python3,libstdc++6 "$1" "$root" >&2
   python="$(basename "$(readlink "$root/usr/bin/python3")")"
   environment="$(tools)"
   rm -rf "$root"/{site,shapes}
