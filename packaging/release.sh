@@ -456,7 +456,7 @@ make_daily() {
   needed_libraries "$(uname -m)-linux-gnu.2.17"
   wheel "$(uname -m)-linux-gnu.2.17" "linux-$(uname -m)" 3.11 "$folder/build" "$folder" "--config-settings=cmake.define.CMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG -DRASTRUM_ONE_SIMD_TARGET"
   shapes "$folder/shapes" build/release/apps/rastrum/rastrum
-  "$(python_of 3.11)" -m venv "$folder/python"
+  new_environment 3.11 "$folder/python"
   "$folder/python/bin/pip" install -q --disable-pip-version-check "$folder"/*.whl
   diff <("$folder/python/bin/python" packaging/digests.py packaging/digests.txt "$folder/shapes") packaging/digests.txt
   wasm "$folder/wasm" "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG"
