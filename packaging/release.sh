@@ -27,111 +27,10 @@ readonly sources=(zlib libpng1.6 libdeflate libjpeg-turbo meshoptimizer imath op
 # The wheel for 3.12 serves all later Pythons that have the global lock; a `t` is for one without.
 readonly pythons=(3.10 3.11 3.12 3.13t 3.14t)
 
-# python_of VERSION: a Python of this version, on the PATH, of pyenv, or compiled here.
-python_of() {
-  local found
-  for found in "$(command -v "python$1" || true)" "$HOME"/.pyenv/versions/"${1%t}".*[0-9]"${1//[0-9.]/}"/bin/python "$work/$1/bin/python$1"; do
-    [[ -x "$found" ]] && "$found" -c '' 2>/dev/null && { echo "$found"; return; }
-  done
-  return 1
-}
+version() { sed -n 's/^#define RASTRUM_VERSION_.* //p' include/rastrum/version.hpp | paste -sd.; }
 
-# Debian 13 has the sources of a Python without the global lock, and no package of it. One of Debian's patches loses the folder of
-# that Python's packages.
-python_3_13t() {
-  python_of 3.13t >/dev/null && return
-  fetch_sources trixie 3.13t-source python3.13
-  (cd "$work"/3.13t-source/python*/ && patch -s -R -p1 <debian/patches/distutils-install-layout.diff &&
-    ./configure -q --disable-gil "--prefix=$work/3.13t" && make -s -j "$(nproc)" && make -s install) >"$work/3.13t.log" 2>&1 ||
-    { tail -n 40 "$work/3.13t.log" >&2; return 1; }
-}
-
-# new_environment PYTHON FOLDER: a virtual environment. Debian's sources of Python have no pip in them, and virtualenv brings one.
-new_environment() {
-  if [[ $1 == *t ]]; then
-    "$(tools)/bin/virtualenv" -q --clear -p "$(python_of "$1")" "$2" >&2
-  else
-    "$(python_of "$1")" -m venv --clear "$2" >&2
-  fi
-}
-
-# environment PYTHON: a virtual environment with what wheels are built with; prints its folder.
-environment() {
-  local folder="$work/python-$1"
-  if [[ ! -x $folder/bin/auditwheel ]]; then
-    new_environment "$1" "$folder"
-    "$folder/bin/pip" install -q --disable-pip-version-check -r packaging/requirements.txt "ziglang==$zig_version" >&2
-  fi
-  echo "$folder"
-}
-
-# The environment of the scripts, of zig and of pip: that of the first Python that is here.
-tools() {
-  local python
-  for python in "${pythons[@]}"; do
-    python_of "$python" >/dev/null && { environment "$python"; return; }
-  done
-  echo "release: there is no Python here, of ${pythons[*]}" >&2
-  exit 2
-}
-
-zig() { echo "$(tools)"/lib/python*/site-packages/ziglang/zig; }
-
-# fetch_sources RELEASE FOLDER PACKAGE…: Debian's source packages of the libraries, unpacked into $work/FOLDER. The machine's own
-# lists stay as they are.
-fetch_sources() {
-  [[ -e $work/$2/complete ]] && return
-  local lists="$work/apt"
-  rm -rf "${work:?}/$2" "$lists"
-  mkdir -p "$work/$2" "$lists/lists/partial" "$lists/cache/archives/partial"
-  echo "deb-src http://deb.debian.org/debian $1 main" >"$lists/sources.list"
-  local options=(-o "Dir::Etc::SourceList=$lists/sources.list" -o Dir::Etc::SourceParts=/dev/null
-    -o "Dir::State::Lists=$lists/lists" -o "Dir::Cache=$lists/cache" -o APT::Sandbox::User=)
-  apt-get "${options[@]}" -qq update
-  (cd "$work/$2" && apt-get "${options[@]}" -qq source "${@:3}")
-  touch "$work/$2/complete"
-}
-
-# configure FOLDER SOURCE TARGET OPTION…: for zig's TARGET, with the libraries for files of that target.
-configure() {
-  local folder="$1" source="$2" target="$3"
-  mkdir -p "$(dirname "$folder")"
-  cmake --no-warn-unused-cli -G Ninja -S "$source" -B "$folder" -DCMAKE_BUILD_TYPE=Release "-DCMAKE_TOOLCHAIN_FILE=$PWD/packaging/zig.cmake" \
-    "-DRASTRUM_ZIG=$(zig)" "-DRASTRUM_ZIG_TARGET=$target" "-DCMAKE_FIND_ROOT_PATH=$work/$target/prefix" \
-    -DCMAKE_{C,CXX}_COMPILER_LAUNCHER=ccache "-DCMAKE_INSTALL_PREFIX=$work/$target/prefix" "-DCMAKE_INSTALL_LIBDIR=$work/$target/prefix/lib" "${@:4}" >"$folder.log"
-}
-
-# library TARGET NAME SOURCE OPTION…: compiles and installs a library of others for TARGET, once.
-library() {
-  local folder="$work/$1/$2"
-  [[ -e $folder/complete ]] && return
-  configure "$folder" "$3" "$1" -DBUILD_SHARED_LIBS=OFF -DBUILD_TESTING=OFF -DCMAKE_POSITION_INDEPENDENT_CODE=ON \
-    -DCMAKE_{C,CXX}_VISIBILITY_PRESET=hidden -DCMAKE_POLICY_DEFAULT_CMP0063=NEW "${@:4}"
-  cmake --build "$folder" --target install >>"$folder.log"
-  touch "$folder/complete"
-}
-
-# needed_libraries TARGET OPTION…: the libraries that Rastrum needs.
-needed_libraries() {
-  library "$1" third packaging/third_parties "-DSOURCES=$work/sources" "${@:2}"
-  library "$1" jpeg "$(echo "$work"/sources/libjpeg-turbo-*/)" -DENABLE_SHARED=OFF -DWITH_SIMD=OFF -DWITH_TURBOJPEG=OFF
-}
-
-# Those that a file or a terrain may ask for.
-more_libraries() {
-  library "$1" imath "$(echo "$work"/sources/imath-*/)"
-  library "$1" openexr "$(echo "$work"/sources/openexr-*/)" -DOPENEXR_BUILD_TOOLS=OFF -DOPENEXR_INSTALL_{EXAMPLES,TOOLS}=OFF
-  library "$1" muparser "$(echo "$work"/sources/muparser-*/)" -DENABLE_{SAMPLES,OPENMP}=OFF
-}
-
-# For systems that are not here.
-libraries_elsewhere() {
-  local target
-  for target in x86_64-windows-gnu aarch64-macos; do
-    needed_libraries "$target"
-    more_libraries "$target"
-  done
-}
+source packaging/compile.sh
+source packaging/trials.sh
 
 # wheel TARGET PLATFORM PYTHON BUILD FOLDER OPTION…: compiled in BUILD, into FOLDER; PLATFORM is Python's name of zig's TARGET;
 # OPTIONs are pip's.
@@ -293,22 +192,6 @@ make_image() {
     <(sed 's/  \([^ ]*\) / builtin:\1 --look plain --size 320x240 /' packaging/digests.txt) "$folder/pictures"
 }
 
-# The licence of each library in the programs: NAME=FILE.
-program_licences() {
-  local name zig
-  zig="$(dirname "$(zig)")"
-  echo "rastrum=LICENSE"
-  echo "font=rastrum/overlay/font/LICENSE"
-  echo "colour_maps=rastrum/scene/color_maps/LICENSE"
-  for name in "${sources[@]}"; do echo "$name=$(echo "$work/sources/$name"-*/debian/copyright)"; done
-  for name in hwy nlohmann-json3 cli11; do echo "$name=$(echo /usr/share/doc/*"$name"-dev/copyright)"; done
-  echo "libc++=$zig/lib/libcxx/LICENSE.TXT"
-  echo "musl=$zig/lib/libc/musl/COPYRIGHT"
-  echo "zig=$zig/LICENSE"
-}
-
-version() { sed -n 's/^#define RASTRUM_VERSION_.* //p' include/rastrum/version.hpp | paste -sd.; }
-
 # wasm FOLDER OPTION…: the package for browsers in FOLDER/package, tried in Chromium; OPTIONs are CMake's. Debian 12's Highway
 # refuses some kernels for WebAssembly, Debian 13's does not.
 wasm() {
@@ -361,93 +244,6 @@ make_deb() {
   try_deb "$folder/root"
 }
 
-# try_deb ROOT: in a Debian that has nothing else, the program draws, and the library's users are built.
-try_deb() {
-  local root="$1" inside=(chroot "$1" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin DEBIAN_FRONTEND=noninteractive)
-  mmdebstrap --quiet --variant=minbase bookworm "$root"
-  cp /etc/resolv.conf "$root/etc/resolv.conf"
-  cp "$out"/*_"$(version)"-1_*.deb "$root/tmp"
-  cp -r tests/install/user "$root/tmp/user"
-  "${inside[@]}" sh -c 'apt-get -qq install -y --no-install-recommends /tmp/rastrum_*.deb' >"$work/deb_try.log"
-  diff <(packaging/digests.sh "${inside[@]}" rastrum) packaging/digests.txt
-  "${inside[@]}" sh -ec 'apt-get -qq install -y --no-install-recommends /tmp/librastrum-dev_*.deb g++ cmake make pkgconf
-    cmake -S /tmp/user -B /tmp/built -DCMAKE_BUILD_TYPE=Release && cmake --build /tmp/built && cd /tmp/built && ./core && ./io && ./family
-    g++ -std=c++20 /tmp/user/core.cpp -o core-pc $(pkg-config --cflags --libs rastrum) && ./core-pc' >>"$work/deb_try.log"
-  tail -n 1 "$work/deb_try.log"
-}
-
-# inside ROOT PROCESSOR COMMAND…: runs a command where there is nothing but ROOT, and no network.
-inside() {
-  local emulator=()
-  if [[ $2 != "$(uname -m)" ]]; then
-    cp "/usr/bin/qemu-$2-static" "$1"
-    emulator=("/qemu-$2-static")
-  fi
-  unshare -n env -i "PATH=$PATH" HOME=/ PYTHONPATH=/site PYTHONDONTWRITEBYTECODE=1 chroot "$1" "${emulator[@]}" "${@:3}"
-}
-
-# shapes FOLDER PROGRAM: what digests.py reads.
-shapes() {
-  local shape
-  mkdir -p "$1"
-  while read -r _ shape _; do
-    [[ -e $1/$shape.ply ]] || "$2" make "$shape" --quiet -o "$1/$shape.ply"
-  done <packaging/digests.txt
-}
-
-# try_wheel RELEASE PROCESSOR PACKAGE…: a wheel and its PACKAGEs from PyPI, beside the Python of a Debian that has nothing else,
-# draw the pictures of digests.txt. NumPy wants libstdc++. Prints the root's folder.
-try_wheel() {
-  local root="$work/root-$1-$2" python environment
-  local -A architectures=([x86_64]=amd64 [aarch64]=arm64)
-  [[ -e $root/usr/bin/python3 ]] || mmdebstrap --quiet --variant=extract --skip=check/qemu \
-    "--architectures=${architectures[$2]}" --include=base-files,python3,libstdc++6 "$1" "$root" >&2
-  python="$(basename "$(readlink "$root/usr/bin/python3")")"
-  environment="$(tools)"
-  rm -rf "$root"/{site,shapes}
-  shapes "$root/shapes" "$out/rastrum-linux-$(uname -m)"
-  cp packaging/digests.{py,txt} "$root"
-  "$environment/bin/pip" install -q --disable-pip-version-check --target "$root/site" --only-binary :all: \
-    --python-version "${python#python}" --platform "manylinux2014_$2" --platform "manylinux_2_27_$2" --platform "manylinux_2_28_$2" \
-    --find-links "$out" "rastrum==$(version)" "${@:3}" >&2
-  diff <(inside "$root" "$2" "/usr/bin/$python" /digests.py /digests.txt /shapes) packaging/digests.txt >&2
-  inside "$root" "$2" "/usr/bin/$python" -c "
-import numpy, time
-start = time.perf_counter()
-import rastrum
-print(f'Debian $1, $2, $python: the digests are equal; import rastrum took {time.perf_counter() - start:.3f} s')" >&2
-  echo "$root"
-}
-
-# Each program, alone in an empty folder, draws the pictures of digests.txt. So does the wheel where Debian has a Python for
-# it. Each wheel of this processor passes the package's tests, and that for AArch64 those of pictures.
-make_try() {
-  local processor python root folder="$work/try"
-  for processor in "${processors[@]}"; do
-    echo "rastrum-linux-$processor"
-    rm -rf "$folder"
-    mkdir -p "$folder"
-    cp "$out/rastrum-linux-$processor" "$folder/rastrum"
-    diff <(packaging/digests.sh inside "$folder" "$processor" /rastrum) packaging/digests.txt
-  done
-  echo rastrum-windows-x86_64.exe
-  diff <(WINEDEBUG=-all WINEPREFIX="$work/wine" packaging/digests.sh /usr/lib/wine/wine64 "$out/rastrum-windows-x86_64.exe") \
-    packaging/digests.txt
-  try_wheel trixie x86_64 >/dev/null
-  try_wheel bookworm x86_64 >/dev/null
-  root="$(try_wheel bookworm aarch64 pytest pillow)"
-  cp -r python/tests tests "$root"
-  inside "$root" aarch64 /usr/bin/python3 -m pytest -q -p no:cacheprovider /python/tests/test_pictures.py
-  for python in "${pythons[@]}" 3.13; do
-    python_of "$python" >/dev/null || { echo "note: there is no Python $python here"; continue; }
-    echo "Python $python"
-    new_environment "$python" "$folder"
-    "$folder/bin/pip" install -q --disable-pip-version-check numpy pytest pillow trimesh
-    "$folder/bin/pip" install -q --disable-pip-version-check --no-index --find-links "$out" rastrum
-    (cd /tmp && "$folder/bin/python" -m pytest -q -p no:cacheprovider "$OLDPWD/python/tests")
-  done
-}
-
 # What CI does each day: a wheel for this Debian's Python and WebAssembly, little optimised and with the libraries that are needed,
 # draw the pictures of digests.txt.
 make_daily() {
@@ -465,13 +261,17 @@ make_daily() {
 main() {
   SOURCE_DATE_EPOCH="$(git log -1 --format=%ct)"
   export SOURCE_DATE_EPOCH
+  local part parts=("$@")
+  ((${#parts[@]})) || { parts=(wheels programs try sdist deb image sbom wasm); rm -rf "$out"; }
   mkdir -p "$work" "$out"
   fetch_sources bookworm sources "${sources[@]}"
-  local part parts=("$@")
-  ((${#parts[@]})) || parts=(wheels programs try sdist deb image sbom wasm)
   for part in "${parts[@]}"; do
     case "$part" in
-      wheels | programs | try | sdist | deb | image | sbom | wasm) "make_$part" ;;
+      wheels | programs | try | sdist | deb | image | sbom | wasm)
+        SECONDS=0
+        "make_$part"
+        echo "release: $part took $SECONDS s"
+        ;;
       daily) make_daily; exit ;;
       *) echo "release: there is no part '$part'; the parts are wheels, programs, try, sdist, deb, image, sbom, wasm" >&2; exit 2 ;;
     esac
