@@ -11,7 +11,7 @@
 #   image     the programs as images of containers (umoci), tried by podman
 #   sbom      which libraries wheels and programs contain (CycloneDX)
 #   wasm      the library for browsers, as an npm package, tried in chromium
-#   daily     not one of all: a quick wheel and WebAssembly, for `./dev check`
+#   quick_wheel, quick_wasm  not of all: compiled in minutes and tried, for `./dev check`
 #
 # zig's clang compiles them (PyPI's ziglang), which has the libraries of old systems. The libraries for files are static,
 # of Debian's source packages (third_parties/CMakeLists.txt), whose licences travel along.
@@ -244,10 +244,9 @@ make_deb() {
   try_deb "$folder/root"
 }
 
-# What CI does each day: a wheel for this Debian's Python and WebAssembly, little optimised and with the libraries that are needed,
-# draw the pictures of digests.txt.
-make_daily() {
-  local folder="$work/daily"
+# A wheel for this Debian's Python, little optimised and with the libraries that are needed, draws the pictures of digests.txt.
+make_quick_wheel() {
+  local folder="$work/quick_wheel"
   rm -rf "$folder"
   needed_libraries "$(uname -m)-linux-gnu.2.17"
   wheel "$(uname -m)-linux-gnu.2.17" "linux-$(uname -m)" 3.11 "$folder/build" "$folder" "--config-settings=cmake.define.CMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG -DRASTRUM_ONE_SIMD_TARGET"
@@ -255,8 +254,8 @@ make_daily() {
   new_environment 3.11 "$folder/python"
   "$folder/python/bin/pip" install -q --disable-pip-version-check "$folder"/*.whl
   diff <("$folder/python/bin/python" packaging/digests.py packaging/digests.txt "$folder/shapes") packaging/digests.txt
-  wasm "$folder/wasm" "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG"
 }
+make_quick_wasm() { wasm "$work/quick_wasm" "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG"; }
 
 main() {
   SOURCE_DATE_EPOCH="$(git log -1 --format=%ct)"
@@ -267,15 +266,14 @@ main() {
   fetch_sources bookworm sources "${sources[@]}"
   for part in "${parts[@]}"; do
     case "$part" in
-      wheels | programs | try | sdist | deb | image | sbom | wasm)
+      wheels | programs | try | sdist | deb | image | sbom | wasm | quick_wheel | quick_wasm)
         SECONDS=0
         "make_$part"
         echo "release: $part took $SECONDS s"
         ;;
-      daily) make_daily; exit ;;
       *) echo "release: there is no part '$part'; the parts are wheels, programs, try, sdist, deb, image, sbom, wasm" >&2; exit 2 ;;
     esac
   done
-  (cd "$out" && rm -f SHA256SUMS && sha256sum -- * >"$work/sums" && mv "$work/sums" SHA256SUMS && ls -l)
+  [[ -z "$(ls "$out")" ]] || (cd "$out" && rm -f SHA256SUMS && sha256sum -- * >"$work/sums" && mv "$work/sums" SHA256SUMS && ls -l)
 }
 main "$@"; exit  # the script may change meanwhile
