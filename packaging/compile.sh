@@ -16,7 +16,7 @@ python_3_13t() {
   python_of 3.13t >/dev/null && return
   fetch_sources trixie 3.13t-source python3.13
   (cd "$work"/3.13t-source/python*/ && patch -s -R -p1 <debian/patches/distutils-install-layout.diff &&
-    ./configure -q --disable-gil "--prefix=$work/3.13t" && make -s -j "$(nproc)" && make -s install) >"$work/3.13t.log" 2>&1 ||
+    ./configure -q --disable-gil --without-ensurepip "--prefix=$work/3.13t" && make -s -j "$(nproc)" && make -s install) >"$work/3.13t.log" 2>&1 ||
     { tail -n 40 "$work/3.13t.log" >&2; return 1; }
 }
 
