@@ -26,6 +26,7 @@ def pages(folder):
     return {
         "rastrum": page(package, "rastrum"),
         "mpi": page(package["mpi"], "rastrum.mpi"),
+        "dataset": page(package["dataset"], "rastrum.dataset"),
         "plugins": f"# Plugins and stand-ins\n\nOther packages find these by their names.\n\n{plugins}",
     }
 

@@ -66,6 +66,24 @@ def _is_transposed(m):
     return goes_along(m.T) and (not goes_along(m) or abs(length(row) - 1) > 1e-6 > abs(length(column) - 1))
 
 
+# What Camera._make calls; functions with names, so that pickle carries cameras.
+
+def _standing(lens, size, ball):
+    return _r.look_at(*lens, ball)
+
+
+def _fitted(scene, lens, size, ball):
+    return _r.fit(scene._made, *lens, *size)
+
+
+def _of_opencv(k, pose, near, first_centre, size, ball):
+    return _r.opencv(k, pose, *size, near, first_centre, ball)
+
+
+def _of_matrix(clip, depth, size, ball):
+    return _r.of_matrix(clip, depth)
+
+
 class Camera:
     """A camera: where it stands and what it sees. Right-handed, x right, y up, looking along its -z; angles in degrees.
 
@@ -80,6 +98,9 @@ class Camera:
         # make(size, ball) -> _rastrum.Camera; ball: (x, y, z, radius) of the scene, if `asks`. Results are cached, so a
         # fitted camera stays where it is.
         self._make, self._asks = functools.lru_cache(maxsize=8)(make), asks
+
+    def __reduce__(self):
+        return Camera, (self._make.__wrapped__, self._asks)
 
     def _for_size(self, size, scene=None):
         return self._make(size, scene._made.ball() if self._asks else None)
@@ -103,10 +124,8 @@ class Camera:
         near, far = _plane(near, "near"), _plane(far, "far")
         lens = eye, target, up, fov, height
         # Raises now for numbers out of range, before the scene is known.
-        made = _r.look_at(*lens, 1e-30 if near is None else near, 1e30 if far is None else far, None)
-        if None not in (near, far):
-            return Camera(lambda size, ball: made)
-        return Camera(lambda size, ball: _r.look_at(*lens, near, far, ball), True)
+        _r.look_at(*lens, 1e-30 if near is None else near, 1e30 if far is None else far, None)
+        return Camera(functools.partial(_standing, (*lens, near, far)), None in (near, far))
 
     @staticmethod
     @raises_errors
@@ -118,7 +137,7 @@ class Camera:
             direction, up = _r.view(view, up)
         else:
             direction, up = _look([-v for v in _triple(view, "view")], up)
-        return Camera(lambda size, ball: _r.fit(scene._made, direction, up, fov, orthographic, *size))
+        return Camera(functools.partial(_fitted, scene, (direction, up, fov, orthographic)))
 
     @staticmethod
     @raises_errors
@@ -144,7 +163,7 @@ class Camera:
             pose[:3, 3] = move.reshape(3)
         near, first_centre = _plane(near, "near"), number(first_centre, "first_centre")
         _r.opencv(k, pose, 1, 1, near, first_centre, None)  # raises for numbers out of range
-        return Camera(lambda size, ball: _r.opencv(k, pose, *size, near, first_centre, ball), near is None)
+        return Camera(functools.partial(_of_opencv, k, pose, near, first_centre), near is None)
 
     @staticmethod
     @raises_errors
@@ -156,8 +175,8 @@ class Camera:
             raise ArgumentError("projection: is a matrix that multiplies rows, but vectors are columns here: take its transpose, .T")
         if view is not None:
             clip = product(clip, placement(view, "view"))
-        made = _r.of_matrix(clip, depth)
-        return Camera(lambda size, ball: made)
+        _r.of_matrix(clip, depth)  # raises for one without an inverse
+        return Camera(functools.partial(_of_matrix, clip, depth))
 
 
 @raises_errors

@@ -43,10 +43,19 @@ class Light:
     @raises_errors
     def __init__(self, kind, place=(0, 0, 0), direction=(0, 0, -1), below="black", range=math.inf, inner=0.0, outer=45.0, *,
                  color="white", intensity=1.0, of_camera=False):
-        self._made = _r.light(kind, _three(place, "position"), _three(direction, "direction"),
-                              _linear(below, "below"), number(range, "range"), math.radians(number(inner, "inner")),
-                              math.radians(number(outer, "outer")), _linear(color, "color"), number(intensity, "intensity"),
-                              bool(of_camera))
+        self._make(kind, _three(place, "position"), _three(direction, "direction"), _linear(below, "below"),
+                   number(range, "range"), math.radians(number(inner, "inner")), math.radians(number(outer, "outer")),
+                   _linear(color, "color"), number(intensity, "intensity"), bool(of_camera))
+
+    def _make(self, kind, *arguments):
+        self._made = _environment(*arguments) if kind == "environment" else _r.light(kind, *arguments)
+        self._call = kind, *arguments
+
+    def __getstate__(self):
+        return self._call
+
+    def __setstate__(self, call):
+        self._make(*call)
 
     @classmethod
     @names_arguments
@@ -88,15 +97,20 @@ class Light:
         """
         look = (_three(up, "up"), math.radians(number(turn, "turn")), _linear(color, "color"), number(intensity, "intensity"), bool(of_camera))
         if isinstance(picture, (str, os.PathLike)):
-            made = _r.environment_of_file(os.fspath(picture))
+            source = os.fspath(picture)
         else:
-            pixels = _numbers(picture, "environment")
-            if pixels.dtype.kind not in "fiu":
-                raise ArgumentTypeError(f"environment: must be numbers or a file, not {pixels.dtype}")
-            made = _r.environment_of_array(np.ascontiguousarray(pixels, np.float32))
+            source = _numbers(picture, "environment")
+            if source.dtype.kind not in "fiu":
+                raise ArgumentTypeError(f"environment: must be numbers or a file, not {source.dtype}")
+            source = np.array(source, np.float32, order="C")
         light = cls.__new__(cls)
-        light._made = _r.environment(made, *look)
+        light._make("environment", source, *look)
         return light
+
+
+def _environment(source, *look):
+    """`source`: a name, or an array of float32."""
+    return _r.environment(_r.environment_of_file(source) if isinstance(source, str) else _r.environment_of_array(source), *look)
 
 
 def lights(wanted, scene=None):

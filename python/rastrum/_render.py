@@ -17,7 +17,7 @@ from ._annotate import annotations as _annotations
 from ._arrays import color as _color
 from ._arrays import floats, number
 from ._camera import Camera, as_camera
-from ._errors import ArgumentError, ArgumentTypeError, MissingOutputError, PictureIndexError, names_arguments, raises_errors
+from ._errors import ArgumentError, ArgumentTypeError, MissingOutputError, PictureIndexError, UnsupportedError, names_arguments, raises_errors
 from ._files import refuse_inputs, whole
 from ._lights import lights as _lights
 from ._scene import as_scene
@@ -79,6 +79,10 @@ class Hit(typing.NamedTuple):
     scalar: float | None = None
 
 
+def _no_pick(x, y):
+    raise UnsupportedError("pick: pickle carries a picture without the scene that it shows; pick where it was drawn")
+
+
 class _Fields:
     """Arrays by name, as attributes."""
 
@@ -125,6 +129,9 @@ class Picture(_Fields):
         super().__init__(arrays, stats)
         self._pick, self._files = pick, files
 
+    def __reduce__(self):
+        return Picture, (self.arrays, self.stats, _no_pick, self._files)
+
     @raises_errors
     def pick(self, x, y):
         """Returns the Hit at pixel (x, y), or None. It reads the scene's arrays as they are now."""
@@ -165,6 +172,9 @@ class Pictures(_Fields):
     def __init__(self, arrays, stats, picks, files=()):
         super().__init__(arrays, stats)
         self._picks, self._files = picks, files
+
+    def __reduce__(self):
+        return Pictures, (self.arrays, self.stats, [_no_pick] * len(self), self._files)
 
     def __len__(self):
         return len(self.stats)
@@ -254,6 +264,9 @@ class Renderer:
         self._renderer()
         _renderers.add(self)
 
+    def __reduce__(self):
+        return _renderer_again, self._options
+
     def _renderer(self):
         if self._made is None:
             self._made = _r.Renderer(*self._options)
@@ -310,6 +323,10 @@ class Renderer:
         if many:
             return Pictures(arrays, stats, [picker(c) for c in made], files)
         return Picture(arrays, stats[0], picker(made[0]), files)
+
+
+def _renderer_again(threads, memory_limit, device, isa):
+    return Renderer(threads=threads, memory_limit=memory_limit, device=device, isa=isa)
 
 
 @raises_errors

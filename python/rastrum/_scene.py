@@ -19,6 +19,7 @@ class Scene:
     --help` lists them).
 
     A Scene may be kept: each frame draws its things with the places, looks and arrays that they have at that time.
+    pickle carries things with their arrays; files are read again where it arrives, from the same absolute paths.
 
     crease: meshes of files without normals are smooth where their faces meet at no more than this angle (degrees);
     180: everywhere; None: nowhere. scalars: the name of the files' numbers that become colours; x, y, z and distance are
@@ -30,6 +31,9 @@ class Scene:
     def __init__(self, things=(), copy=None, crease=40.0, *, scalars=None, cmap="viridis", clim=None, memory_limit=None,
                  allow_outside=True):
         self.files, self.things = [], []
+        options = {"crease": crease, "scalars": scalars, "cmap": cmap, "clim": clim, "memory_limit": memory_limit,
+                   "allow_outside": allow_outside}
+        self._call = [], options  # for pickle: things and absolute paths in their order
         self._read_from = ()  # absolute, because the process may change its folder
         self._made = _r.Scene()
         self._locks = {}  # of _read_again
@@ -46,6 +50,7 @@ class Scene:
                 if not builtin:
                     self._read_from += (os.path.abspath(path),)
                 if builtin or not _readers.reads(path):
+                    self._call[0].append(path if builtin else os.path.abspath(path))
                     self._made.add_file(path, crease, memory_limit, bool(allow_outside))
                     self.files.append(path)
                     continue
@@ -57,6 +62,7 @@ class Scene:
                 mapping = 0 if thing.mapping is None else thing.mapping._add_to(self._made, mappings)
                 self._made.add(thing._geometry, thing._look, thing._scalar, mapping)
                 self.things.append(thing)
+                self._call[0].append(thing)
                 self._material_of.append(None)
         self._read_again()
         if scalars is not None and (self.files or not others):
@@ -64,6 +70,9 @@ class Scene:
         for mapping, number in mappings.values():
             if mapping.isoline_count:
                 self._made.spread_isolines(number, mapping.isoline_count)
+
+    def __reduce__(self):
+        return _made_again, self._call
 
     def _read_again(self):
         """Reads the looks of the things as they are now. Threads that draw the scene take turns here."""
@@ -142,6 +151,10 @@ class Scene:
         self._read_again()
         found = self._made.bounds()
         return None if found is None else tuple(tuple(corner) for corner in found)
+
+
+def _made_again(things, options):
+    return Scene(things, **options)
 
 
 def load(path, *, crease=40.0, scalars=None, cmap="viridis", clim=None, memory_limit=None, allow_outside=True):

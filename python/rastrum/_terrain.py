@@ -80,10 +80,20 @@ class Terrain:
             if colors is not None and not isinstance(colors, (str, os.PathLike)):
                 raise ArgumentTypeError("colors: must be a file, too, if heights are a file")
             self._made = _r.lit_terrain_of_file(os.fspath(heights), None if colors is None else os.fspath(colors), scale, *light)
+            heights, colors = os.path.abspath(heights), None if colors is None else os.path.abspath(colors)
+            self._read_from = (heights,) if colors is None else (heights, colors)
         else:
-            self._made = _r.lit_terrain(*_arrays(heights, colors), scale, *light)
+            heights, colors = _arrays(heights, colors)
+            self._made = _r.lit_terrain(heights, colors, scale, *light)
+            self._read_from = ()
         self._renderer = None, None
-        self._read_from = tuple(os.path.abspath(file) for file in (heights, colors) if isinstance(file, (str, os.PathLike)))
+        # For pickle; arrays are as they were given, which costs nothing while the caller has them.
+        self._call = heights, None if mapping is not None else colors, {
+            "height_scale": height_scale, "sun": sun, "shadows": shadows, "ambient": ambient, "sun_radius": sun_radius, "filter": filter,
+            "tiling": tiling, "threads": threads, "lights": lights, "tone": tone, "exposure": exposure, "cmap": mapping}
+
+    def __reduce__(self):
+        return _made_again, self._call
 
     @property
     def heights(self):
@@ -138,6 +148,10 @@ class Terrain:
             renderer = _r.TerrainRenderer(self._threads)
             self._renderer = os.getpid(), renderer
         return renderer
+
+
+def _made_again(heights, colors, options):
+    return Terrain(heights, colors, **options)
 
 
 def _no_pick(x, y):

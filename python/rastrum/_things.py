@@ -130,7 +130,7 @@ class ColorMapping:
         else:
             values = [float(v) for v in isolines]
         try:
-            self._made = _r.mapping(
+            self._make(
                 colors, discrete, clim, bool(log), bool(symmetric), int(steps), [float(v) for v in categories],
                 None if below is None else list(_color(below, "below")),
                 None if above is None else list(_color(above, "above")), list(_color(nan, "nan")),
@@ -138,6 +138,16 @@ class ColorMapping:
                 list(_color(isoline_color, "isoline_color")), float(isoline_width))
         except ArgumentError as e:
             raise ArgumentError(_FIELD.sub(lambda m: _ARGUMENT.get(m[1], m[1]), str(e))) from None
+
+    def _make(self, *arguments):
+        self._made, self._arguments = _r.mapping(*arguments), arguments
+
+    def __getstate__(self):
+        return self.isoline_count, self._arguments
+
+    def __setstate__(self, state):
+        self.isoline_count, arguments = state
+        self._make(*arguments)
 
     def _add_to(self, scene, mappings):
         """Its number among the scene's. `mappings`: (mapping, number) of those that are there, by id()."""
@@ -234,6 +244,19 @@ class _Thing:
                 each = _scalars(scalars, "scalars", copy)
         self.__dict__.update(mapping=mapping, scalars=each, _scalar=one)
 
+    def _make(self, kind, *arguments):
+        """Makes the geometry by the function `kind` of C++; kept for pickle, too."""
+        self._geometry, self._call = getattr(_r, kind)(*arguments), (kind, *arguments)
+
+    def __getstate__(self):
+        return {name: value for name, value in self.__dict__.items() if name not in ("_look", "_geometry", "_in_place")}
+
+    def __setstate__(self, state):
+        self.__dict__.update(state, _look=_r.Look(), _in_place=frozenset())
+        for name in _LOOK:
+            self._take(name, state[name])
+        self._make(*self._call)
+
     def _refuse(self, name):
         import difflib
         import inspect
@@ -326,6 +349,8 @@ class Mesh(_Thing):
     number (normals and uv then belong to the vertices). Without normals the mesh is shaded with face normals.
     """
 
+    _prepared = False
+
     @raises_errors
     def __init__(self, positions, indices=None, *, offsets=None, normals=None, uv=None, colors=None, per=None, copy=None, **look):
         super().__init__(copy=copy, **look)
@@ -360,10 +385,8 @@ class Mesh(_Thing):
         counts = {"vertex": vertices, "face": faces, "corner": corners}
         if per != "corner" and (indices is None or corners == vertices and np.array_equal(indices.reshape(-1), np.arange(corners))):
             del counts["corner"]  # corners are the vertices
-        self._faces = positions, indices, kind, offsets
-        self._attributes = (normals, _per(normals, "normals", counts), uv, _per(uv, "uv", counts), colors,
-                            _per(colors, "colors", counts, per), self.scalars, _per(self.scalars, "scalars", counts, per))
-        self._geometry = _r.mesh(*self._faces, *self._attributes)
+        self._make("mesh", positions, indices, kind, offsets, normals, _per(normals, "normals", counts), uv, _per(uv, "uv", counts),
+                   colors, _per(colors, "colors", counts, per), self.scalars, _per(self.scalars, "scalars", counts, per))
 
     @raises_errors
     def prepare(self, threads=0):
@@ -373,12 +396,16 @@ class Mesh(_Thing):
         Positions and faces are copied: what changes in them later is not seen (other arrays are read anew for each
         picture). Scenes that were made of the mesh before draw it as it was. threads: 0: all.
         """
-        positions, indices, kind, offsets = self._faces
-        faces = (*(None if a is None else np.array(a, order="C") for a in (positions, indices)), kind,
-                 None if offsets is None else np.array(offsets, order="C"))
-        self._geometry = _r.mesh(*faces, *self._attributes).prepared(int(threads))
-        self._faces = faces
+        name, positions, indices, kind, offsets, *attributes = self._call
+        positions, indices, offsets = (None if a is None else np.array(a, order="C") for a in (positions, indices, offsets))
+        self._make(name, positions, indices, kind, offsets, *attributes)
+        self._geometry, self._prepared = self._geometry.prepared(int(threads)), True
         return self
+
+    def __setstate__(self, state):
+        super().__setstate__(state)
+        if self._prepared:
+            self.prepare()
 
 
 def _one_or_each(value, name, copy):
@@ -400,8 +427,8 @@ class Points(_Thing):
         super().__init__(copy=copy, **look)
         sizes, size = _one_or_each(size, "size", copy)
         normals = None if normals is None else floats(normals, "normals", (3,), copy)
-        self._geometry = _r.points(_positions(positions, copy), normals, _colors(colors, copy), sizes,
-                                   size, _yes_or_no(round, "round"), self.scalars)
+        self._make("points", _positions(positions, copy), normals, _colors(colors, copy), sizes, size, _yes_or_no(round, "round"),
+                   self.scalars)
 
 
 class Lines(_Thing):
@@ -419,8 +446,8 @@ class Lines(_Thing):
         positions = _positions(positions, copy)
         if _none(indices) or _none(offsets):
             positions, indices, offsets = positions[:0], None, None
-        self._geometry = _r.lines(positions, indices, offsets, polylines, _colors(colors, copy), number(width, "width", 0, 3.4e38),
-                                  self.scalars)
+        self._make("lines", positions, indices, offsets, polylines, _colors(colors, copy), number(width, "width", 0, 3.4e38),
+                   self.scalars)
 
 
 class Spheres(_Thing):
@@ -430,8 +457,7 @@ class Spheres(_Thing):
     def __init__(self, centers, radius=1.0, *, colors=None, copy=None, **look):
         super().__init__(copy=copy, **look)
         radii, radius = _one_or_each(radius, "radius", copy)
-        self._geometry = _r.spheres(_positions(centers, copy, "centers"), radii, radius, _colors(colors, copy),
-                                    self.scalars)
+        self._make("spheres", _positions(centers, copy, "centers"), radii, radius, _colors(colors, copy), self.scalars)
 
 
 class Cylinders(_Thing):
@@ -445,7 +471,7 @@ class Cylinders(_Thing):
         positions = _positions(positions, copy)
         if _none(indices):
             positions, indices = positions[:0], None
-        self._geometry = _r.cylinders(positions, indices, radii, radius, _colors(colors, copy), _yes_or_no(caps, "caps"), self.scalars)
+        self._make("cylinders", positions, indices, radii, radius, _colors(colors, copy), _yes_or_no(caps, "caps"), self.scalars)
 
 
 class Tubes(_Thing):
@@ -459,7 +485,7 @@ class Tubes(_Thing):
         positions = _positions(positions, copy)
         if _none(offsets):
             positions, offsets = positions[:0], None
-        self._geometry = _r.tubes(positions, offsets, radii, radius, _colors(colors, copy), self.scalars)
+        self._make("tubes", positions, offsets, radii, radius, _colors(colors, copy), self.scalars)
 
 
 class Discs(_Thing):
@@ -469,8 +495,8 @@ class Discs(_Thing):
     def __init__(self, centers, normals, radius=1.0, *, colors=None, copy=None, **look):
         super().__init__(copy=copy, **look)
         radii, radius = _one_or_each(radius, "radius", copy)
-        self._geometry = _r.discs(_positions(centers, copy, "centers"), floats(normals, "normals", (3,), copy), radii,
-                                  radius, _colors(colors, copy), self.scalars)
+        self._make("discs", _positions(centers, copy, "centers"), floats(normals, "normals", (3,), copy), radii, radius,
+                   _colors(colors, copy), self.scalars)
 
 
 @raises_errors

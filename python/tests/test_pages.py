@@ -40,7 +40,7 @@ def run_blocks(page, blocks, names):
 
 def test_the_guide_runs(tmp_path, monkeypatch):
     blocks = blocks_of("python.md")
-    assert len(blocks) == 10
+    assert len(blocks) == 11
     monkeypatch.chdir(tmp_path)
     vertices, faces = ball()
     rows = [*(f"v {x} {y} {z}" for x, y, z in vertices), *(f"f {a} {b} {c}" for a, b, c in faces + 1)]
@@ -60,7 +60,7 @@ def test_the_guide_runs(tmp_path, monkeypatch):
         "room": (vertices, faces), "scene": [(vertices, faces)] * 4, "pressure": vertices[:, 1], "centers": centers,
         "radii": np.array([0.3, 0.2, 0.1]), "per_atom": np.eye(3), "pairs": np.array([[0, 1], [1, 2]]), "paths": centers,
         "offsets": np.array([0, 3]), "speed": np.arange(3.0), "charge": np.arange(3.0), "fx": 600, "fy": 600, "cx": 320, "cy": 240,
-        "R": np.eye(3), "t": [0, 0, 4], "trajectory": [(np.eye(3), [0, 0, 4 + i]) for i in range(4)],
+        "R": np.eye(3), "t": [0, 0, 4], "world_to_camera": np.eye(4), "model_to_world": np.eye(4), "trajectory": [(np.eye(3), [0, 0, 4 + i]) for i in range(4)],
         "heights": heights, "photo": np.full((64, 64, 3), 128, np.uint8)}
     run_blocks("python.md", blocks, names)
     assert (tmp_path / "bunny.png").stat().st_size > 1000

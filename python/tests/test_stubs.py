@@ -10,9 +10,10 @@ import sys
 import pytest
 
 import rastrum as rr
+import rastrum.dataset
 
 STUB = pathlib.Path(__file__).resolve().parents[1] / "rastrum" / "__init__.pyi"
-STUBS = {rr: STUB, rr.mpi: STUB.with_name("mpi.pyi")}
+STUBS = {rr: STUB, rr.mpi: STUB.with_name("mpi.pyi"), rr.dataset: STUB.with_name("dataset.pyi")}
 
 
 def parameters(function):
