@@ -14,6 +14,7 @@ python_of() {
 # that Python's packages.
 python_3_13t() {
   python_of 3.13t >/dev/null && return
+  rm -rf "$work/3.13t-source"  # the patch can be taken back once
   fetch_sources trixie 3.13t-source python3.13
   (cd "$work"/3.13t-source/python*/ && patch -s -R -p1 <debian/patches/distutils-install-layout.diff &&
     ./configure -q --disable-gil --without-ensurepip "--prefix=$work/3.13t" && make -s -j "$(nproc)" && make -s install) >"$work/3.13t.log" 2>&1 ||
@@ -77,12 +78,14 @@ configure() {
 
 # library TARGET NAME SOURCE OPTION…: compiles and installs a library of others for TARGET, once.
 library() {
-  local folder="$work/$1/$2"
-  [[ "$(cat "$folder/complete" 2>/dev/null)" == "$*" ]] && return
+  local folder="$work/$1/$2" made_of
+  made_of="$* $(cat "$work/sources/complete") $(sha256sum <"$3/CMakeLists.txt")"
+  [[ "$(cat "$folder/complete" 2>/dev/null)" == "$made_of" ]] && return
+  rm -rf "$folder"
   configure "$folder" "$3" "$1" -DBUILD_SHARED_LIBS=OFF -DBUILD_TESTING=OFF -DCMAKE_POSITION_INDEPENDENT_CODE=ON \
     -DCMAKE_{C,CXX}_VISIBILITY_PRESET=hidden -DCMAKE_POLICY_DEFAULT_CMP0063=NEW "${@:4}"
   cmake --build "$folder" --target install >>"$folder.log"
-  echo "$*" >"$folder/complete"
+  echo "$made_of" >"$folder/complete"
 }
 
 # needed_libraries TARGET OPTION…: the libraries that Rastrum needs.

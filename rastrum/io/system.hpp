@@ -25,7 +25,7 @@ struct FileInfo {
 [[nodiscard]] std::optional<FileInfo> info_of(int descriptor);
 [[nodiscard]] bool may_write(const std::filesystem::path& file_or_folder);
 
-/// `wait`: until a pipe has a writer.
+/// "/dev/stdin" is standard input everywhere. `wait`: until a pipe has a writer.
 [[nodiscard]] int open_to_read(const std::filesystem::path& file, bool wait);
 [[nodiscard]] int open_to_write(const std::filesystem::path& file);
 [[nodiscard]] int open_standard_output();

@@ -49,7 +49,9 @@ bool may_write(const fs::path& file_or_folder) {
 }
 
 int open_to_read(const fs::path& file, bool wait) {
-  return ::open(file.c_str(), O_RDONLY | O_CLOEXEC | (wait ? 0 : O_NONBLOCK));
+  const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | (wait ? 0 : O_NONBLOCK));
+  // A folder that is all of a program's world (chroot) may have no /dev.
+  return fd < 0 && file == "/dev/stdin" ? duplicate(STDIN_FILENO) : fd;
 }
 int open_to_write(const fs::path& file) {
   return ::open(file.c_str(), O_WRONLY | O_CLOEXEC);
