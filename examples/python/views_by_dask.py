@@ -4,8 +4,8 @@
     python3 views_by_dask.py mesh.ply out --views 1000 --size 256
     python3 views_by_dask.py mesh.ply out --scheduler tcp://head:8786      # a cluster that runs already
 
-Needs `distributed` (PyPI) beside rastrum. The scene goes to each worker once. A worker that dies loses nothing: Dask draws its
-views again elsewhere, with the same bytes. digests.txt has a line for each view, the same for any number of workers.
+Needs `distributed` (PyPI) beside rastrum. The scene goes to each worker once. While another worker has the scene, one may die:
+Dask draws its views again elsewhere, with the same bytes. digests.txt has a line for each view, the same for any number of workers.
 """
 
 import argparse

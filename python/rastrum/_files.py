@@ -33,6 +33,13 @@ def whole(path):
         temporary.abandon()
 
 
+def shallow(value):
+    """A copy that shares all; of a class whose __reduce__ is for other processes."""
+    made = type(value).__new__(type(value))
+    made.__dict__.update(value.__dict__)
+    return made
+
+
 def refuse_inputs(path, inputs):
     """Raises if `path`, by any name or link, is one of the files that were read."""
     for read in inputs:

@@ -2,6 +2,7 @@
 """Pictures: what is drawn, by whom, and into which arrays."""
 
 import atexit
+import copy
 import math
 import operator
 import os
@@ -18,7 +19,7 @@ from ._arrays import color as _color
 from ._arrays import floats, number
 from ._camera import Camera, as_camera
 from ._errors import ArgumentError, ArgumentTypeError, MissingOutputError, PictureIndexError, UnsupportedError, names_arguments, raises_errors
-from ._files import refuse_inputs, whole
+from ._files import refuse_inputs, shallow, whole
 from ._lights import lights as _lights
 from ._scene import as_scene
 
@@ -89,6 +90,14 @@ class _Fields:
     def __init__(self, arrays, stats):
         self.arrays, self.stats = arrays, stats
 
+    def __copy__(self):
+        return shallow(self)
+
+    def __deepcopy__(self, memo):
+        made = shallow(self)
+        made.arrays, made.stats = copy.deepcopy((self.arrays, self.stats), memo)
+        return made
+
     def __getattr__(self, name):
         arrays = self.__dict__.get("arrays", {})
         if name in arrays:
@@ -130,7 +139,7 @@ class Picture(_Fields):
         self._pick, self._files = pick, files
 
     def __reduce__(self):
-        return Picture, (self.arrays, self.stats, _no_pick, self._files)
+        return type(self), (self.arrays, self.stats, _no_pick, self._files)
 
     @raises_errors
     def pick(self, x, y):
@@ -174,7 +183,7 @@ class Pictures(_Fields):
         self._picks, self._files = picks, files
 
     def __reduce__(self):
-        return Pictures, (self.arrays, self.stats, [_no_pick] * len(self), self._files)
+        return type(self), (self.arrays, self.stats, [_no_pick] * len(self), self._files)
 
     def __len__(self):
         return len(self.stats)
@@ -286,10 +295,10 @@ class Renderer:
         """Returns a Picture of `what` for one camera, or Pictures for a sequence of cameras or an (N, 4, 4) array.
 
         what: anything that as_scene takes. camera: a Camera, a (4, 4), or None: the whole scene from the front. size: (W, H).
-        outputs: names of Picture's fields. shader: auto, flat, depth, normal, id, lambert, phong, material, wireframe.
+        outputs: names of Picture's fields. shader: auto, flat, depth, normal, id, lambert, phong, material, wireframe, classic.
         background: a colour, None: transparent. samples: 1, 4, 8 or 16 a pixel. transparency: exact, unsorted, none.
         cull: none, back, front. clip_planes: rows (x, y, z, d); only what lies at x X + y Y + z Z + d >= 0 in the world is drawn.
-        lights: for the shaders lambert, phong and material: headlight, studio (key, fill, back and head light), file (the lights of
+        lights: for the shaders lambert, phong, material and classic: headlight, studio (key, fill, back and head light), file (the lights of
         glTF files), a Light, or a list of these; None: each shader's fixed light. shadows: whether directional lights and spots
         throw them. shadow_size: the largest width of a shadow map in texels, 0: the frame's size decides. shadow_distance: how
         far from the eye shadows are drawn, 0: as far as the picture sees. tone, exposure: for material: none, reinhard, aces or
@@ -359,7 +368,7 @@ def _look(scene, size, shader, background, samples, transparency, cull, opacity,
         raise ArgumentTypeError(f"samples: must be 1, 4, 8 or 16, not {samples!r}")
     made = _lights(lights, scene._made)
     if shadows and not any(light.throws_shadows for light in made):
-        raise ArgumentError("shadows: only directional lights and spots throw them, and there are none; take lights='studio', or a rastrum.Light")
+        raise ArgumentError("shadows: only directional lights and spots throw them, and none of the lights does; take lights='studio', or a rastrum.Light")
     return _r.frame(width, height, _text(shader, "shader"), _text(cull, "cull"),
                     [0.0] * 4 if background is None else list(_color(background, "background")), number(opacity, "opacity", 0, 1),
                     _text(transparency, "transparency"), samples,

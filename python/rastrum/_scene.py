@@ -8,6 +8,7 @@ import numpy as np
 from . import _rastrum as _r
 from . import _others, _readers, _surface
 from ._errors import ArgumentError, ArgumentTypeError, NotFoundError, raises_errors, warn
+from ._files import shallow
 from ._locks import lock_in
 from ._things import ColorMapping, Mesh, _Thing
 
@@ -19,7 +20,7 @@ class Scene:
     --help` lists them).
 
     A Scene may be kept: each frame draws its things with the places, looks and arrays that they have at that time.
-    pickle carries things with their arrays; files are read again where it arrives, from the same absolute paths.
+    pickle carries things with their arrays. Files of our own readers are read again where it arrives, from the same absolute paths.
 
     crease: meshes of files without normals are smooth where their faces meet at no more than this angle (degrees);
     180: everywhere; None: nowhere. scalars: the name of the files' numbers that become colours; x, y, z and distance are
@@ -67,12 +68,17 @@ class Scene:
         self._read_again()
         if scalars is not None and (self.files or not others):
             self._show(scalars, cmap, clim, mappings)
+        elif others:
+            options.update(scalars=None, clim=None)  # the things have them
         for mapping, number in mappings.values():
             if mapping.isoline_count:
                 self._made.spread_isolines(number, mapping.isoline_count)
 
     def __reduce__(self):
-        return _made_again, self._call
+        return _made_again, (type(self), *self._call, self._read_from)
+
+    def __copy__(self):
+        return shallow(self)
 
     def _read_again(self):
         """Reads the looks of the things as they are now. Threads that draw the scene take turns here."""
@@ -153,8 +159,10 @@ class Scene:
         return None if found is None else tuple(tuple(corner) for corner in found)
 
 
-def _made_again(things, options):
-    return Scene(things, **options)
+def _made_again(kind, things, options, read_from):
+    scene = kind(things, **options)
+    scene._read_from = read_from
+    return scene
 
 
 def load(path, *, crease=40.0, scalars=None, cmap="viridis", clim=None, memory_limit=None, allow_outside=True):

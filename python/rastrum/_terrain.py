@@ -39,9 +39,10 @@ def _arrays(heights, colors):
 class Terrain:
     """A height map, which is lit once and drawn from any place.
 
-    heights: (H, W) in cells, row 0 in the north, NaN is a hole; they are copied. Or a file (.png, .npy, .dem, .tif), as the
-    program reads it. height_scale: how many cells high a unit of the heights is, if the heights are not in cells and the
-    file does not say so. `clim`, bar and box are in that unit, everything else in cells.
+    heights: (H, W) in cells, row 0 in the north, NaN is a hole; they are copied (but pickle takes the array as it is then).
+    Or a file (.png, .npy, .dem, .tif), as the program reads it. height_scale: how many cells high a unit of the heights is,
+    if the heights are not in cells and the file does not say so. `clim`, bar and box are in that unit, everything else in
+    cells.
 
     colors: (h, w, 3 or 4) of uint8, of any size, stretched over the map; for a file of heights a .png or .jpg; None: colours by
     height, with shaded slopes. sun: (azimuth clockwise from north, elevation) in degrees, None: (315, 35). shadows: none,
@@ -83,11 +84,10 @@ class Terrain:
             heights, colors = os.path.abspath(heights), None if colors is None else os.path.abspath(colors)
             self._read_from = (heights,) if colors is None else (heights, colors)
         else:
-            heights, colors = _arrays(heights, colors)
-            self._made = _r.lit_terrain(heights, colors, scale, *light)
+            self._made = _r.lit_terrain(*_arrays(heights, colors), scale, *light)
             self._read_from = ()
         self._renderer = None, None
-        # For pickle; arrays are as they were given, which costs nothing while the caller has them.
+        # For pickle: the caller's arrays, because C++ keeps only what is drawn.
         self._call = heights, None if mapping is not None else colors, {
             "height_scale": height_scale, "sun": sun, "shadows": shadows, "ambient": ambient, "sun_radius": sun_radius, "filter": filter,
             "tiling": tiling, "threads": threads, "lights": lights, "tone": tone, "exposure": exposure, "cmap": mapping}

@@ -132,7 +132,14 @@ class BopScene:
         color = np.asarray(color)
         if color.dtype != np.uint8 or color.ndim != 3 or color.shape[2] not in (3, 4):
             raise ArgumentError(f"color: must be (H, W, 3 or 4) of uint8, not {color.shape} of {color.dtype}")
-        stored = millimetres(depth, self._unit)
+        stored, objects = millimetres(depth, self._unit), list(objects)
+        shapes = {"depth": stored.shape, **{f"objects[{i}]": seen.mask.shape for i, (_, _, seen) in enumerate(objects)}}
+        for name, shape in shapes.items():
+            if shape != color.shape[:2]:
+                raise ArgumentError(f"{name}: is {shape}, and the picture is {color.shape[:2]}")
+        k = np.asarray(K, np.float64)
+        if k.shape != (3, 3):
+            raise ArgumentError(f"K: must be (3, 3), not {k.shape}")
         turn, move = _pose(world_to_camera, "world_to_camera", self._unit)
         poses, about = [], []
         for obj_id, model_to_world, seen in objects:
@@ -150,7 +157,7 @@ class BopScene:
         for i, (_, _, seen) in enumerate(objects):
             self._save(f"mask/{name}_{i:06d}.png", np.where(seen.mask, 255, 0).astype(np.uint8))
             self._save(f"mask_visib/{name}_{i:06d}.png", np.where(seen.visible, 255, 0).astype(np.uint8))
-        self._tables["scene_camera"][str(number)] = {"cam_K": np.asarray(K, float).ravel().tolist(), "depth_scale": 1.0,
+        self._tables["scene_camera"][str(number)] = {"cam_K": k.ravel().tolist(), "depth_scale": 1.0,
                                                      "cam_R_w2c": turn, "cam_t_w2c": move}
         self._tables["scene_gt"][str(number)] = poses
         self._tables["scene_gt_info"][str(number)] = about

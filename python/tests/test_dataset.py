@@ -76,7 +76,7 @@ def test_a_folder_of_bop(tmp_path):
     away[2, 3] = 4
     with dataset.BopScene(tmp_path / "000001") as scene:
         for _ in range(2):
-            scene.add(picture.color, picture.depth, K, pose, [(5, away, seen[0]), (6, away, seen[9]), (7, away, seen[2])])
+            scene.add(picture.color, picture.depth, K, pose, iter([(5, away, seen[0]), (6, away, seen[9]), (7, away, seen[2])]))
     folder = tmp_path / "000001"
     about = json.loads((folder / "scene_gt_info.json").read_text())["1"]
     assert [o["px_count_all"] for o in about] == [400, 256, 0]
@@ -91,5 +91,7 @@ def test_a_folder_of_bop(tmp_path):
     assert ((mask == 255) == seen[9].visible).all()
     with pytest.raises(rr.ArgumentError, match="is not empty"):
         dataset.BopScene(folder)
+    with pytest.raises(rr.ArgumentError, match=r"depth: is \(1, 64\), and the picture is \(48, 64\)"):
+        dataset.BopScene(tmp_path / "3").add(picture.color, picture.depth[:1], K, pose, [])
     with pytest.raises(rr.ArgumentError, match="rotation must not scale"):
         dataset.BopScene(tmp_path / "2").add(picture.color, picture.depth, K, 2 * np.diag([1, 1, 1, 0.5]), [])

@@ -89,9 +89,11 @@ def test_looks_are_those_of_the_moment():
 
 def test_a_prepared_mesh_stays_so(sheet):
     mesh = rr.Mesh(*sheet).prepare()
-    other, _, _ = through(mesh)
+    expected = rr.digest(rr.render(mesh).color)
+    other = pickle.loads(pickle.dumps(mesh))
+    assert other._prepared
     sheet[0][:] = 0  # neither sees it
-    assert rr.digest(rr.render(mesh).color) == rr.digest(rr.render(other).color)
+    assert rr.digest(rr.render(mesh).color) == rr.digest(rr.render(other).color) == expected
 
 
 def test_a_file_is_read_again_where_it_is(obj, tmp_path, monkeypatch):
@@ -108,6 +110,31 @@ def test_a_picture_comes_without_its_scene(sheet):
     picture, _, _ = through(rr.render(rr.Mesh(*sheet), size=(8, 8)))
     with pytest.raises(rr.UnsupportedError, match="pickle carries a picture without the scene"):
         picture.pick(4, 4)
+
+
+def test_a_copy_here_is_as_it_was(sheet):
+    scene = rr.Scene([rr.Mesh(*sheet)])
+    picture = rr.render(scene, size=(8, 8))
+    for made in (copy.copy(picture), copy.deepcopy(picture)):
+        assert made.pick(4, 4) == picture.pick(4, 4)
+    assert copy.copy(scene).things[0] is scene.things[0]
+
+
+def test_things_of_other_readers_travel_as_arrays(tmp_path):
+    meshio = pytest.importorskip("meshio")
+    file = tmp_path / "part.vtu"
+    points, cells = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]]), [("tetra", [[0, 1, 2, 3]])]
+    meshio.Mesh(points, cells, point_data={"heat": np.arange(4.0)}).write(file)
+    scene = rr.load(file, scalars="heat")
+    data = pickle.dumps(scene)
+    picture = rr.render(scene, size=(32, 32))
+    other = rr.render(pickle.loads(data), size=(32, 32))
+    assert rr.digest(picture.color) == rr.digest(other.color)
+    file.rename(tmp_path / "gone.vtu")
+    assert rr.digest(rr.render(pickle.loads(data), size=(32, 32)).color) == rr.digest(picture.color)
+    (tmp_path / "gone.vtu").rename(file)
+    with pytest.raises(rr.ArgumentError, match="was read for this picture"):
+        other.save(file)
 
 
 def test_terrains_and_renderers():
