@@ -189,7 +189,8 @@ typedef struct rastrum_frame rastrum_frame;
 rastrum_frame* rastrum_frame_new(int width, int height);
 void rastrum_frame_free(rastrum_frame* frame);
 
-/// A name: "auto", "flat", "depth", "normal", "id", "lambert", "phong", "material", "wireframe".
+/// A name: "auto", "flat", "depth", "normal", "id", "lambert", "phong", "material", "wireframe",
+/// "classic".
 rastrum_status rastrum_frame_set_shader(rastrum_frame* frame, const char* shader);
 /// The background, display values with straight alpha; (0, 0, 0, 0) unless it is set.
 rastrum_status rastrum_frame_set_background(rastrum_frame* frame, const float rgba[4]);

@@ -11,11 +11,12 @@ BEGINS = re.compile(r"(?:^|(?<=[.:]\s)|(?<=\n))(\w+(?:, \w+)*): (?=\S)")
 ENDS = re.compile(r"(?<=\.)\s(?=(?:Returns|Raises) )")
 CODE = re.compile(r"(?:^ {4}.*\n)+", re.MULTILINE)
 # The keywords that **look takes.
-LOOK = {"color", "material", "transform", "visible", "id", "winding", "clip_planes", "scalars", "cmap", "clim"}
+LOOK = {"color", "material", "transform", "visible", "casts_shadows", "id", "winding", "clip_planes", "scalars", "cmap", "clim"}
 PLUGINS = {
     "pytest_plugin": "pytest",
     "pyvista_plugin": "PyVista",
     "compat.pyrender": "pyrender",
+    "compat.mujoco": "MuJoCo",
 }
 
 

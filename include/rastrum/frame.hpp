@@ -18,7 +18,7 @@ enum class Cull : std::uint8_t { none, back, front };
 
 /// How surfaces are shaded. The base colour of `flat`, `lambert`, `phong` and `wireframe` is the
 /// mesh's colour, or (0.8, 0.7, 0.6) without one. With materials it is the base colour factor as a
-/// display value, times the mesh's colour if there is one. `material` alone uses textures.
+/// display value, times the mesh's colour if there is one. `material` and `classic` use textures.
 enum class Shader : std::uint8_t {
   automatic,  ///< `material` for a scene with materials, else `phong`
   flat,       ///< base colour, unlit
@@ -29,6 +29,7 @@ enum class Shader : std::uint8_t {
   phong,      ///< lambert + 0.3 max(n·h, 0)³²
   material,   ///< glTF metallic-roughness, textures, sRGB transfer
   wireframe,  ///< triangle edges about a pixel wide over the flat surface
+  classic,    ///< OpenGL's fixed pipeline: ambient, diffuse, specular, emission; textures
 };
 
 /// How the translucent fragments of a pixel become one colour.

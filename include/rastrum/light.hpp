@@ -55,6 +55,18 @@ struct EnvironmentLight {
   float turn_rad = 0;  ///< before that a turn about +y, counter-clockwise seen from there
 };
 
+/// A light of Shader::classic, as in OpenGL's fixed pipeline. Colours are display values, each in
+/// [0, 1e12]. It takes the place of Light::color and intensity, of a point's and spot's range and
+/// of a spot's inner angle.
+struct ClassicLight {
+  Vec3 ambient{};          ///< reaches a surface from all sides
+  Vec3 diffuse{1, 1, 1};   ///< reaches a surface that faces the light
+  Vec3 specular{1, 1, 1};  ///< is mirrored
+  /// A point or spot at distance d is divided by x + y d + z d². None is negative, one is not 0.
+  Vec3 attenuation{1, 0, 0};
+  float exponent = 0;  ///< of a spot, in [0, 128]: at angle a to its axis it has cosᵉ a
+};
+
 struct Light {
   std::variant<AmbientLight, HemisphereLight, DirectionalLight, PointLight, SpotLight,
                EnvironmentLight>
@@ -64,7 +76,11 @@ struct Light {
   /// position): glTF's lux or candela divided by π; an environment is multiplied by it. In
   /// [0, 1e12].
   float intensity = 1;
-  bool of_camera = false;  ///< moves with the camera: its vectors are in those axes
+  bool of_camera = false;     ///< moves with the camera: its vectors are in those axes
+  bool casts_shadows = true;  ///< where FrameOptions::shadows asks for them
+  /// Directional lights, points and spots may have it. None: Shader::classic takes the display
+  /// value of `color`, cut at 1, times `intensity`, and no ambient light of it.
+  std::optional<ClassicLight> classic{};
 };
 
 /// The most lights of a frame.

@@ -70,8 +70,8 @@ struct FrameOptions {
   /// hide what lies behind. This is decided at each pixel, in float64, from the triangle that is
   /// drawn (once a pixel for a triangle, also with several samples). Sections stay open.
   std::vector<ClipPlane> clip_planes{};
-  /// The lights for `lambert`, `phong` and `material`; empty: the fixed light of each. Frames with
-  /// lights are drawn by the CPU, not by a device.
+  /// The lights for `lambert`, `phong`, `material` and `classic`; empty: the fixed light of each.
+  /// Frames with lights are drawn by the CPU, not by a device.
   std::vector<Light> lights{};
   /// Whether opaque surfaces cast shadows of the directional `lights`, and of the spots that reach
   /// at most 84.8° from their axis. Translucent surfaces cast none; the fixed light makes none.

@@ -42,6 +42,14 @@ struct Texture {
 
 inline constexpr std::int32_t kNoTexture = -1;
 
+/// Shader::classic reads this of a material, beside the base colour and its texture. Light that is
+/// mirrored is white times the light's specular colour; 128 · shininess is its exponent.
+struct ClassicMaterial {
+  float specular = 0.5F;   ///< how much is mirrored; ≥ 0
+  float shininess = 0.5F;  ///< in [0, 1], in steps of 1/2048
+  float emission = 0;      ///< how much of its base colour shines without light; ≥ 0
+};
+
 /// A surface's look. Factors are linear light. A texture is an index into Scene::textures.
 struct Material {
   std::string name{};
@@ -64,6 +72,7 @@ struct Material {
   /// The opacity of every surface that has this material, in [0, 1]. It is multiplied by
   /// FrameOptions::opacity.
   float opacity = 1;
+  ClassicMaterial classic{};
 };
 
 /// Keeps places p with normal · p + offset ≥ 0. The normal points to the side that is kept, and
@@ -150,6 +159,7 @@ struct InstanceView {
   /// The mapping from its scalars to colours: an index into SceneView::scalar_mappings, if there
   /// are any. These colours replace the geometry's, and the materials' base colours and textures.
   std::uint32_t scalar_mapping = 0;
+  bool casts_shadows = true;  ///< where FrameOptions::shadows asks for them
 
   /// The triangle mesh that it draws; null if it draws another geometry.
   [[nodiscard]] const MeshView* mesh() const { return geometry.get_if<MeshView>(); }
@@ -184,6 +194,7 @@ struct Instance {
   std::vector<ClipPlane> clip_planes{};
   std::optional<double> scalar{};
   std::uint32_t scalar_mapping = 0;  ///< index into Scene::scalar_mappings
+  bool casts_shadows = true;
 };
 
 /// The result of readers: meshes and other geometries, instances in order of submission, materials,

@@ -24,7 +24,7 @@ export interface FrameOptions {
   targets?: string[];
   /** Those of `targets` whose digests are made. */
   digests?: string[];
-  shader?: 'auto' | 'flat' | 'depth' | 'normal' | 'id' | 'lambert' | 'phong' | 'material' | 'wireframe';
+  shader?: 'auto' | 'flat' | 'depth' | 'normal' | 'id' | 'lambert' | 'phong' | 'material' | 'wireframe' | 'classic';
   background?: number[];
   samples?: 1 | 4 | 8 | 16;
   opacity?: number;

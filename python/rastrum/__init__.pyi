@@ -35,6 +35,7 @@ class Material:
     def __init__(self, base_color: Color = "white", *, metallic: float = 0.0, roughness: float = 1.0,
                  emissive: Color = "black", alpha_mode: Literal["opaque", "mask", "blend"] = "opaque",
                  alpha_cutoff: float = 0.5, double_sided: bool = True, unlit: bool = False, opacity: float = 1.0,
+                 specular: float = 0.5, shininess: float = 0.5, emission: float = 0.0,
                  base_color_texture: _Texture = None, metallic_roughness_texture: _Texture = None,
                  normal_texture: _Texture = None, occlusion_texture: _Texture = None,
                  emissive_texture: _Texture = None) -> None: ...
@@ -53,6 +54,7 @@ class _Thing:
     material: Material | None
     transform: ArrayLike | None
     visible: bool
+    casts_shadows: bool
     id: int | None
     winding: str
     clip_planes: ArrayLike
@@ -61,7 +63,7 @@ class _Thing:
     @property
     def primitives(self) -> int: ...
 
-# `look`: color, opacity, material, transform, visible, id, winding, clip_planes, scalars, cmap, clim.
+# `look`: color, opacity, material, transform, visible, casts_shadows, id, winding, clip_planes, scalars, cmap, clim.
 class Mesh(_Thing):
     def __init__(self, positions: ArrayLike, indices: ArrayLike | None = None, *, offsets: ArrayLike | None = None,
                  normals: ArrayLike | None = None, uv: ArrayLike | None = None, colors: ArrayLike | None = None,
@@ -95,7 +97,8 @@ class Discs(_Thing):
 class Light:
     def __init__(self, kind: str, place: Sequence[float] = (0, 0, 0), direction: Sequence[float] = (0, 0, -1),
                  below: Color = "black", range: float = ..., inner: float = 0.0, outer: float = 45.0, *, color: Color = "white",
-                 intensity: float = 1.0, of_camera: bool = False) -> None: ...
+                 intensity: float = 1.0, of_camera: bool = False, casts_shadows: bool = True,
+                 classic: dict[str, Any] | None = None) -> None: ...
     @classmethod
     def ambient(cls, **look: Any) -> Light: ...
     @classmethod

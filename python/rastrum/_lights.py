@@ -37,15 +37,20 @@ class Light:
 
     color: a display colour, as everywhere. intensity: how bright the light makes a white, matt surface that faces it (from one
     unit away if the light has a position). of_camera: places and directions are relative to the camera, x to the right, y up,
-    z towards the viewer. A direction is the one in which the light travels.
+    z towards the viewer. A direction is the one in which the light travels. casts_shadows: where a frame's `shadows` asks for them.
+
+    classic: for the shader classic, {"ambient", "diffuse", "specular": a colour each, "attenuation": (x, y, z), "exponent": e}, as
+    OpenGL has them: the light at distance d is divided by x + y d + z d^2, and a spot's has the cosine of the angle to its axis
+    to the power of e within `outer`. By default they are black, white, white, (1, 0, 0) and 0. None: `color` times `intensity`.
     """
 
     @raises_errors
     def __init__(self, kind, place=(0, 0, 0), direction=(0, 0, -1), below="black", range=math.inf, inner=0.0, outer=45.0, *,
-                 color="white", intensity=1.0, of_camera=False):
+                 color="white", intensity=1.0, of_camera=False, casts_shadows=True, classic=None):
         self._make(kind, _three(place, "position"), _three(direction, "direction"), _linear(below, "below"),
                    number(range, "range"), math.radians(number(inner, "inner")), math.radians(number(outer, "outer")),
-                   _linear(color, "color"), number(intensity, "intensity"), bool(of_camera))
+                   _linear(color, "color"), number(intensity, "intensity"), bool(of_camera), bool(casts_shadows),
+                   None if classic is None else _classic(**classic))
 
     def _make(self, kind, *arguments):
         self._made = _environment(*arguments) if kind == "environment" else _r.light(kind, *arguments)
@@ -98,6 +103,7 @@ class Light:
         look = (_three(up, "up"), math.radians(number(turn, "turn")), _linear(color, "color"), number(intensity, "intensity"), bool(of_camera))
         if isinstance(picture, (str, os.PathLike)):
             source = os.fspath(picture)
+            source = os.path.abspath(source) if os.path.exists(source) else source  # else "sky", or an error that names it
         else:
             source = _numbers(picture, "environment")
             if source.dtype.kind not in "fiu":
@@ -106,6 +112,14 @@ class Light:
         light = cls.__new__(cls)
         light._make("environment", source, *look)
         return light
+
+
+@names_arguments
+def _classic(ambient="black", diffuse="white", specular="white", attenuation=(1, 0, 0), exponent=0.0):
+    """C++'s fields of it, one after the other. Colours may be brighter than white."""
+    colors = ((ambient, "ambient"), (diffuse, "diffuse"), (specular, "specular"))
+    rows = [list(_color(c, name)[:3]) if isinstance(c, str) else _three(c, name) for c, name in colors]
+    return [*rows[0], *rows[1], *rows[2], *_three(attenuation, "attenuation"), number(exponent, "exponent")]
 
 
 def _environment(source, *look):

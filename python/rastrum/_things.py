@@ -33,6 +33,10 @@ def _part(value, name):
     return number(value, name, 0, 1)
 
 
+def _not_negative(value, name):
+    return number(value, name, 0, math.inf)
+
+
 def _fixed_color(value, name):
     """A string as it is, else a copy that cannot change later."""
     made = _color(value, name)
@@ -52,8 +56,9 @@ def _texture(value, name):
 
 _TEXTURES = ("base_color_texture", "metallic_roughness_texture", "normal_texture", "occlusion_texture", "emissive_texture")
 _OF_MATERIAL = {"base_color": _fixed_color, "metallic": _part, "roughness": _part, "emissive": _fixed_color,
-                "alpha_mode": _one_of("opaque", "mask", "blend"), "alpha_cutoff": lambda value, name: number(value, name, 0, math.inf),
-                "double_sided": _yes_or_no, "unlit": _yes_or_no, "opacity": _part, **dict.fromkeys(_TEXTURES, _texture)}
+                "alpha_mode": _one_of("opaque", "mask", "blend"), "alpha_cutoff": _not_negative,
+                "double_sided": _yes_or_no, "unlit": _yes_or_no, "opacity": _part, "specular": _not_negative, "shininess": _part,
+                "emission": _not_negative, **dict.fromkeys(_TEXTURES, _texture)}
 
 
 class Material:
@@ -61,18 +66,21 @@ class Material:
 
     base_color, emissive: display colours ('#rrggbb', names, 3 or 4 numbers in [0, 1]). Textures: (H, W, 3 or 4)
     of uint8, or a file (.png, .jpg), sRGB for base colour and emission. A Scene copies a texture when it first gets it. metallic,
-    roughness, opacity: in [0, 1]; `opacity` multiplies alpha. Fields may be changed: scenes draw them as they are.
+    roughness, opacity: in [0, 1]; `opacity` multiplies alpha. specular, shininess, emission: only for the shader classic: how much light
+    is mirrored, the exponent's part of 128, and how much of its colour shines by itself. Fields may be changed: scenes draw them
+    as they are.
     """
 
     @raises_errors
     def __init__(self, base_color="white", *, metallic=0.0, roughness=1.0, emissive="black", alpha_mode="opaque",
-                 alpha_cutoff=0.5, double_sided=True, unlit=False, opacity=1.0, base_color_texture=None,
-                 metallic_roughness_texture=None, normal_texture=None, occlusion_texture=None,
+                 alpha_cutoff=0.5, double_sided=True, unlit=False, opacity=1.0, specular=0.5, shininess=0.5, emission=0.0,
+                 base_color_texture=None, metallic_roughness_texture=None, normal_texture=None, occlusion_texture=None,
                  emissive_texture=None):
         self.changes = object()  # another one after each change: tells scenes whether they have the latest
         self.base_color, self.metallic, self.roughness = base_color, metallic, roughness
         self.emissive, self.alpha_mode, self.alpha_cutoff = emissive, alpha_mode, alpha_cutoff
         self.double_sided, self.unlit, self.opacity = double_sided, unlit, opacity
+        self.specular, self.shininess, self.emission = specular, shininess, emission
         self.base_color_texture, self.metallic_roughness_texture = base_color_texture, metallic_roughness_texture
         self.normal_texture, self.occlusion_texture, self.emissive_texture = normal_texture, occlusion_texture, emissive_texture
 
@@ -92,7 +100,7 @@ class Material:
         """The material of C++. `textures`: the numbers of its textures in the scene, -1 for none."""
         return _r.material(list(linear(_color(self.base_color, "base_color"))), self.metallic, self.roughness,
                            list(linear(_color(self.emissive, "emissive"))[:3]), self.alpha_mode, self.alpha_cutoff,
-                           self.double_sided, self.unlit, self.opacity, textures)
+                           self.double_sided, self.unlit, self.opacity, [self.specular, self.shininess, self.emission], textures)
 
 
 #: For errors: C++ messages name the fields of ScalarMapping; fields that ColorMapping calls otherwise are translated.
@@ -198,11 +206,11 @@ def _look_material(value, name):
 
 #: Checks and converts the fields of a thing's look for C++.
 _LOOK = {"color": _look_color, "opacity": _part, "material": _look_material,
-         "transform": lambda value, name: None if value is None else placement(value, name), "visible": _yes_or_no,
+         "transform": lambda value, name: None if value is None else placement(value, name), "visible": _yes_or_no, "casts_shadows": _yes_or_no,
          "id": lambda value, name: None if value is None else whole(value, name, 0, 2**63 - 1),
          "winding": _one_of("counter_clockwise", "clockwise", "either"), "clip_planes": _look_planes}
 #: The values with which C++ begins.
-_PLAIN = {"color": None, "opacity": 1.0, "material": None, "transform": None, "visible": True, "id": None,
+_PLAIN = {"color": None, "opacity": 1.0, "material": None, "transform": None, "visible": True, "casts_shadows": True, "id": None,
           "winding": "counter_clockwise", "clip_planes": ()}
 _FIXED = (type(None), str, bool, int, float, np.generic)
 #: An assignment to a thing's look and a frame's reading of it in place are one after the other.
@@ -213,9 +221,9 @@ class _Thing:
     """A geometry placed in the world, with its own look.
 
     color: replaces the geometry's colours. opacity: in [0, 1]. transform: (4, 4) or (3, 4), from object to world.
-    material: a Material. visible: False draws nothing, but keeps the ids. id: the number in `instance` pictures, by default
-    its place in the scene. clip_planes: rows (x, y, z, d) in object space; only what lies at x X + y Y + z Z + d >= 0 is
-    drawn. winding: counter_clockwise, clockwise or either.
+    material: a Material. visible: False draws nothing, but keeps the ids. casts_shadows: False leaves it out of shadows. id:
+    the number in `instance` pictures, by default its place in the scene. clip_planes: rows (x, y, z, d) in object space; only
+    what lies at x X + y Y + z Z + d >= 0 is drawn. winding: counter_clockwise, clockwise or either.
     These may be changed, by assignment or in place: scenes read them for each frame.
 
     scalars: numbers that become colours: one for the whole thing, or one for each vertex, face, corner, point, sphere or

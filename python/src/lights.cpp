@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <array>
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -18,10 +21,18 @@ namespace rastrum::python {
 namespace {
 
 using Numbers3 = std::array<double, 3>;
+/// ClassicLight's fields, one after the other.
+using Classic = std::array<double, 13>;
+
+ClassicLight classic_light(const Classic& c) {
+  const auto vec3 = [&](std::size_t i) { return Vec3(Vec3d{c[i], c[i + 1], c[i + 2]}); };
+  return {vec3(0), vec3(3), vec3(6), vec3(9), static_cast<float>(c[12])};
+}
 
 Light light(const std::string& kind, const Numbers3& place, const Numbers3& direction,
             const Numbers3& below, double range, double inner_rad, double outer_rad,
-            const Numbers3& color, double intensity, bool of_camera) {
+            const Numbers3& color, double intensity, bool of_camera, bool casts_shadows,
+            const std::optional<Classic>& classic) {
   const auto vec3 = [](const Numbers3& v) { return Vec3(Vec3d{v[0], v[1], v[2]}); };
   const Vec3d at{place[0], place[1], place[2]};
   Light l;
@@ -43,6 +54,8 @@ Light light(const std::string& kind, const Numbers3& place, const Numbers3& dire
   l.color = vec3(color);
   l.intensity = static_cast<float>(intensity);
   l.of_camera = of_camera;
+  l.casts_shadows = casts_shadows;
+  if (classic) l.classic = classic_light(*classic);
   check_lights({&l, 1});
   return l;
 }
@@ -94,11 +107,12 @@ void bind_lights(nb::module_& m) {
   m.def("environment_of_array", environment_of_array, arg("picture"));
   m.def("environment_of_file", environment_of_file, arg("file"));
   nb::class_<Light>(m, "Light").def_prop_ro("throws_shadows", [](const Light& l) {
-    return std::holds_alternative<DirectionalLight>(l.kind) ||
-           std::holds_alternative<SpotLight>(l.kind);
+    return l.casts_shadows && (std::holds_alternative<DirectionalLight>(l.kind) ||
+                               std::holds_alternative<SpotLight>(l.kind));
   });
   m.def("light", light, arg("kind"), arg("place"), arg("direction"), arg("below"), arg("range"),
-        arg("inner"), arg("outer"), arg("color"), arg("intensity"), arg("of_camera"));
+        arg("inner"), arg("outer"), arg("color"), arg("intensity"), arg("of_camera"),
+        arg("casts_shadows"), arg("classic").none());
   m.def("headlight", [] { return headlight(); });
   m.def("light_kit", [] { return light_kit(); });
   m.def("environment", environment, arg("picture"), arg("up"), arg("turn"), arg("color"),

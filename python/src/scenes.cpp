@@ -39,7 +39,7 @@ Vec4 vec4(const Numbers4& v) {
 
 Material material(const Numbers4& base_color, double metallic, double roughness,
                   const Numbers3& emissive, const std::string& alpha_mode, double alpha_cutoff,
-                  bool double_sided, bool unlit, double opacity,
+                  bool double_sided, bool unlit, double opacity, const Numbers3& classic,
                   const std::array<std::int32_t, 5>& textures) {
   Material m;
   m.base_color = vec4(base_color);
@@ -52,6 +52,8 @@ Material material(const Numbers4& base_color, double metallic, double roughness,
   m.double_sided = double_sided;
   m.unlit = unlit;
   m.opacity = static_cast<float>(opacity);
+  m.classic = {static_cast<float>(classic[0]), static_cast<float>(classic[1]),
+               static_cast<float>(classic[2])};
   m.base_color_texture = textures[0];
   m.metallic_roughness_texture = textures[1];
   m.normal_texture = textures[2];
@@ -287,6 +289,7 @@ ArrayScene::Shown ArrayScene::show(bool beside_materials) const {
     else if (b.any_materials)
       i.material = b.plain[arrays.has_colors || i.color ? 1 : 0];
     i.visible = look.visible;
+    i.casts_shadows = look.casts_shadows;
     i.winding = look.winding;
     i.id = look.id;
     planes.push_back(look.clip_planes.size());
@@ -320,7 +323,7 @@ void bind_scenes(nb::module_& m) {
   nb::class_<Material>(m, "Material");
   m.def("material", material, arg("base_color"), arg("metallic"), arg("roughness"), arg("emissive"),
         arg("alpha_mode"), arg("alpha_cutoff"), arg("double_sided"), arg("unlit"), arg("opacity"),
-        arg("textures"));
+        arg("classic"), arg("textures"));
   nb::class_<ScalarMapping>(m, "Mapping");
   m.def("mapping", mapping, arg("colors"), arg("discrete"), arg("range").none(), arg("logarithmic"),
         arg("symmetric"), arg("steps"), arg("categories"), arg("below").none(), arg("above").none(),
@@ -355,6 +358,7 @@ void bind_scenes(nb::module_& m) {
           arg("transform").none(), nb::lock_self())
       .def_rw("opacity", &Look::opacity, nb::lock_self())
       .def_rw("visible", &Look::visible, nb::lock_self())
+      .def_rw("casts_shadows", &Look::casts_shadows, nb::lock_self())
       .def_prop_rw(
           "color",
           [](const Look& l) -> std::optional<Numbers4> {

@@ -20,6 +20,7 @@ struct Look {
   float opacity = 1;
   std::optional<Vec4> color{};  ///< display values
   bool visible = true;
+  bool casts_shadows = true;
   Winding winding = Winding::counter_clockwise;
   std::optional<std::int64_t> id{};
   std::vector<ClipPlane> clip_planes{};

@@ -259,6 +259,8 @@ FrameStats Renderer::Impl::render_alone(const SceneView& scene, const Camera& ca
   if (options.device == Device::cuda) call.device.why_not = why_not_on_device(scene);
   if (call.device.why_not.empty() && (!o.lights.empty() || call.is_shadow_map))
     call.device.why_not = "the frame has its own lights, which only the CPU has";
+  if (call.device.why_not.empty() && taken == Shader::classic)
+    call.device.why_not = "only the CPU has the shader classic";
   raster::check_materials(runs);
   check_surfaces(runs);
   check_outputs(call.targets, true, taken == Shader::material);
@@ -299,11 +301,18 @@ std::span<const raster::LightShadow> Renderer::Impl::draw_shadows(const SceneVie
                                                                   const FrameOptions& frame,
                                                                   std::uint64_t& peak,
                                                                   ShadowRanks* ranks) {
+  std::vector<InstanceView> list;
+  SceneView casters = scene;
+  if (!std::ranges::all_of(scene.instances, &InstanceView::casts_shadows)) {
+    list.assign(scene.instances.begin(), scene.instances.end());
+    for (InstanceView& i : list) i.visible = i.visible && i.casts_shadows;
+    casters.instances = list;
+  }
   const auto draw_depth = [&](const Camera& light, const FrameOptions& look,
                               ImageView<float> depth) {
     const Targets targets{.depth = depth};
     const FrameStats stats =
-        render_alone(scene, light, {.frame = look, .targets = targets, .is_shadow_map = true});
+        render_alone(casters, light, {.frame = look, .targets = targets, .is_shadow_map = true});
     peak = std::max(peak, stats.peak_bytes);
   };
   return shadows.draw(scene, camera, frame, draw_depth, ranks);

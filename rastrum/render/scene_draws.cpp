@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <utility>
+#include <variant>
 
+#include <rastrum/core/reject.hpp>
 #include <rastrum/pick.hpp>
 #include <rastrum/raster/draws/shader_table.hpp>
 #include <rastrum/raster/draws/vertices_of.hpp>
@@ -25,15 +27,25 @@ bool blends_surfaces(const SceneDraws::Options& o) {
 raster::SurfaceLook look_of(const SceneDraws::Options& o,
                             const std::optional<raster::FrameLights>& lights) {
   std::optional<Shader> model;
-  if (o.shader != Shader::material) model = lit_model(o.shader);
-  return {model, blends_surfaces(o), o.frame.opacity, lights ? &lights->set() : nullptr};
+  const bool classic = o.shader == Shader::classic;
+  if (o.shader != Shader::material && !classic) model = lit_model(o.shader);
+  return {model, classic, blends_surfaces(o), o.frame.opacity, lights ? &lights->set() : nullptr};
 }
 
 /// None if nothing asks for them.
 std::optional<raster::FrameLights> lights_of(const SceneDraws::Options& o, const Camera& camera) {
-  if (!raster::row_of(o.shader).lights || o.frame.lights.empty()) return {};
-  return std::optional<raster::FrameLights>(std::in_place, o.frame.lights, o.shadows, camera,
-                                            o.frame.width, o.frame.height);
+  const bool classic = o.shader == Shader::classic;
+  const Light plain = headlight();
+  std::span<const Light> lights = o.frame.lights;
+  if (!raster::row_of(o.shader).lights || (lights.empty() && !classic)) return {};
+  if (lights.empty()) lights = {&plain, 1};
+  if (classic)
+    for (const Light& light : lights)
+      require(!std::holds_alternative<EnvironmentLight>(light.kind),
+              "the shader classic has no environments: take them out of the lights, or the shader "
+              "material");
+  return std::optional<raster::FrameLights>(std::in_place, lights, o.shadows, camera, o.frame.width,
+                                            o.frame.height, classic);
 }
 
 }  // namespace
@@ -57,11 +69,14 @@ SceneDraws::SceneDraws(const InstanceRuns& runs, const Camera& camera, const Opt
   const bool masks = (flags.materials & kTested) != 0;
   const bool material_alpha = (flags.materials & kTranslucent) != 0;
   const bool shades_materials = options.shader == Shader::material;
+  const bool classic = options.shader == Shader::classic;
   const bool wants_albedo = !targets.albedo.empty();
+  if (shades_materials || classic || masks || material_alpha || wants_albedo)
+    textures.update(
+        scene_.textures,
+        raster::texture_uses(scene_, shades_materials || wants_albedo, material_alpha, classic),
+        threads);
   if (shades_materials || masks || material_alpha || wants_albedo) {
-    textures.update(scene_.textures,
-                    raster::texture_uses(scene_, shades_materials || wants_albedo, material_alpha),
-                    threads);
     materials_.emplace(meshes_, camera, o.width, o.height, textures);
     materials_->lights = lights_ ? &lights_->set() : nullptr;
     set_copies(materials_->draws);
@@ -87,6 +102,11 @@ SceneDraws::SceneDraws(const InstanceRuns& runs, const Camera& camera, const Opt
   }
   if (shades_materials) {
     shading_ = raster::MaterialShading{&*materials_, linear_light_};
+  } else if (classic) {
+    classic_.emplace(meshes_, camera, o.width, o.height, textures, true);
+    classic_->lights = &lights_->set();
+    set_copies(classic_->draws);
+    shading_ = raster::MaterialShading{&*classic_};
   } else {
     lit_.emplace(meshes_, camera, o.width, o.height);
     lit_->lights = lights_ ? &lights_->set() : nullptr;

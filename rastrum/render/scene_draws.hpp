@@ -90,7 +90,8 @@ class SceneDraws {
   std::deque<raster::DrawCut> cuts_;  // draws point to them
   SurfaceDraws surfaces_;
   raster::PointLineShader points_and_lines_;
-  std::optional<raster::MaterialScene> materials_;
+  std::optional<raster::MaterialScene> materials_;  ///< in linear light, for alpha and albedo, too
+  std::optional<raster::MaterialScene> classic_;
   std::optional<raster::LitScene> lit_;
   std::optional<raster::SurfaceScene> surface_;
   raster::Shading shading_;

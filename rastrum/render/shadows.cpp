@@ -168,6 +168,7 @@ int size_for(const FrameOptions& frame, std::size_t pictures) {
 }  // namespace
 
 bool has_shadow(const Light& light) {
+  if (!light.casts_shadows) return false;
   constexpr float kWidest = 1.48F;  // nearly 85°
   const auto* const spot = std::get_if<SpotLight>(&light.kind);
   return spot != nullptr ? spot->outer_rad <= kWidest

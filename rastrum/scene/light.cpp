@@ -54,6 +54,15 @@ struct Problem {
   }
 };
 
+const char* problem_of(const ClassicLight& c) {
+  for (const Vec3 color : {c.ambient, c.diffuse, c.specular})
+    if (!is_color(color)) return "its classic colours must lie in [0, 1e12]";
+  const Vec3 a = c.attenuation;
+  if (!is_color(a) || a.x + a.y + a.z == 0)
+    return "its attenuation must be three numbers in [0, 1e12] of which one is not 0";
+  return c.exponent >= 0 && c.exponent <= 128 ? nullptr : "its exponent must lie in [0, 128]";
+}
+
 /// A lamp of VTK's light kit, `elevation` above and `azimuth` to the right of the viewer.
 Light lamp(double elevation, double azimuth, float intensity, Vec3 color) {
   const SinCos up = sin_cos_degrees(elevation), across = sin_cos_degrees(azimuth);
@@ -76,6 +85,13 @@ void check_lights(std::span<const Light> lights) {
   for (std::size_t i = 0; i < lights.size(); ++i) {
     const Light& light = lights[i];
     const char* problem = std::visit(Problem{}, light.kind);
+    if (problem == nullptr && light.classic) {
+      problem = problem_of(*light.classic);
+      if (std::holds_alternative<AmbientLight>(light.kind) ||
+          std::holds_alternative<HemisphereLight>(light.kind) ||
+          std::holds_alternative<EnvironmentLight>(light.kind))
+        problem = "its classic part is for directional lights, points and spots";
+    }
     if (!is_color(light.color)) problem = "its colour must lie in [0, 1e12]";
     if (!(light.intensity >= 0 && light.intensity <= 1e12F))
       problem = "its intensity must lie in [0, 1e12]";

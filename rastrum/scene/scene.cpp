@@ -195,6 +195,7 @@ SceneBinding::SceneBinding(const Scene& scene) : scene_("SceneBinding", &scene) 
     instance.color = i.color;
     instance.material = i.material;
     instance.visible = i.visible;
+    instance.casts_shadows = i.casts_shadows;
     instance.winding = i.winding;
     instance.id = i.id;
     instance.clip_planes = i.clip_planes;

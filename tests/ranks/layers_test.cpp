@@ -36,7 +36,7 @@ Scene glass(std::uint64_t seed, bool with_materials) {
 TEST(RanksLayers, EqualOneRendererWithEveryShader) {
   std::uint64_t seed = 1;
   for (const Shader shader : {Shader::flat, Shader::depth, Shader::normal, Shader::id,
-                              Shader::lambert, Shader::phong, Shader::wireframe}) {
+                              Shader::lambert, Shader::phong, Shader::wireframe, Shader::classic}) {
     const Scene scene = glass(seed, false);
     expect_equal(scene, frame_of(shader, 40, 30), {3}, seed, kSerialRank);
     expect_equal(scene, frame_of(shader, 75, 50), {1, 5}, seed, kThreadRank);

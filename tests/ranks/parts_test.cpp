@@ -39,10 +39,11 @@ TEST(Parts, OfPreparedMeshesEqualOneRenderers) {
 TEST(Parts, EqualOneRendererWithEveryShader) {
   std::uint64_t seed = 1;
   for (const Shader shader : {Shader::flat, Shader::depth, Shader::normal, Shader::id,
-                              Shader::lambert, Shader::phong, Shader::wireframe}) {
+                              Shader::lambert, Shader::phong, Shader::wireframe, Shader::classic}) {
     expect_equal(seed++, false, frame_of(shader, 75, 50), {1, 3});
   }
-  expect_equal(seed, true, frame_of(Shader::material, 75, 50), {2, 5});
+  for (const Shader shader : {Shader::material, Shader::classic})
+    expect_equal(seed, true, frame_of(shader, 75, 50), {2, 5});
   expect_equal(seed, true, frame_of(Shader::automatic, 75, 50), {3});
 }
 

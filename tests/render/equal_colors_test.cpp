@@ -125,7 +125,9 @@ class EqualScalars : public testing::Test {
       expect_equal(scene, s.camera,
                    {.width = 60,
                     .height = 44,
-                    .shader = seed % 3 == 0 ? Shader::material : Shader::phong,
+                    .shader = seed % 3 == 0   ? Shader::material
+                              : seed % 3 == 1 ? Shader::phong
+                                              : Shader::classic,
                     .samples = seed % 4 == 3 ? 4 : 1},
                    seed);
     }

@@ -155,8 +155,15 @@ TEST(Hashes, Lights) {
     frames.push_back({.shader = shader, .lights = several, .shadows = true});
   }
   frames.back().tone = {Tone::aces, 0.5F};
-  for (const std::string spec : {"torus_knot", "boxes?count=3", "spheres"})
-    expect_golden_frames("lights/" + shape_of(spec), shapes::scene_from_spec(spec), frames);
+  std::vector<FrameOptions> classic{
+      {.shader = Shader::classic, .samples = 4, .lights = light_kit()}};
+  several.push_back({.kind = PointLight{{-1, 1, 1}}, .classic = ClassicLight{{0.1F, 0, 0}}});
+  classic.push_back({.shader = Shader::classic, .lights = several, .shadows = true});
+  for (const std::string spec : {"torus_knot", "boxes?count=3", "spheres"}) {
+    const Scene scene = shapes::scene_from_spec(spec);
+    expect_golden_frames("lights/" + shape_of(spec), scene, frames);
+    expect_golden_frames("classic/" + shape_of(spec), scene, classic);
+  }
 }
 
 template <class Picture>

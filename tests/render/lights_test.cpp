@@ -158,6 +158,50 @@ Vec3d expected_display(const std::vector<Light>& lights, bool shines, Vec3d p, V
   return sum;
 }
 
+/// The colour by `classic` without a texture.
+Vec3d expected_classic(const std::vector<Light>& lights, const Material& m, Vec3d p, Vec3d n,
+                       Vec3d v) {
+  const auto shown = [](Vec3d c) { return Vec3d{display(c.x), display(c.y), display(c.z)}; };
+  const Vec3d base = shown(wide({m.base_color.x, m.base_color.y, m.base_color.z}));
+  Vec3d sum = base * m.classic.emission;
+  for (const Light& l : lights) {
+    Light of_display = l;
+    of_display.color = Vec3(shown(wide(l.color)));
+    if (auto* const h = std::get_if<HemisphereLight>(&of_display.kind))
+      h->below = Vec3(shown(wide(h->below)));
+    if (const auto from_around = around(of_display, n)) {
+      sum = sum + times(base, *from_around);
+      continue;
+    }
+    Arrived in = arrived(of_display, p);
+    Vec3d ambient, diffuse = in.radiance, specular = in.radiance;
+    if (l.classic) {
+      const auto* const point = std::get_if<PointLight>(&l.kind);
+      const auto* const spot = std::get_if<SpotLight>(&l.kind);
+      double share = 1;
+      if (point != nullptr || spot != nullptr) {
+        const double d = length((point != nullptr ? point->position : spot->position) - p);
+        const Vec3 a = l.classic->attenuation;
+        share = 1 / (a.x + a.y * d + a.z * d * d);
+      }
+      if (spot != nullptr) {
+        const double cosine = -dot(unit(wide(spot->direction)), in.to_light);
+        share *= cosine >= std::cos(spot->outer_rad) ? std::pow(cosine, l.classic->exponent) : 0;
+      }
+      ambient = wide(l.classic->ambient) * share;
+      diffuse = wide(l.classic->diffuse) * share;
+      specular = wide(l.classic->specular) * share;
+    }
+    const double n_l = dot(n, in.to_light);
+    sum = sum + times(base, ambient + diffuse * std::max(n_l, 0.0));
+    const double n_h = std::max(dot(n, unit(v + in.to_light)), 0.0);
+    if (n_l > 0)
+      sum = sum + specular * (m.classic.specular * std::pow(n_h, 128 * m.classic.shininess));
+  }
+  const auto limited = [](double c) { return std::min(c, 1.0); };
+  return {limited(sum.x), limited(sum.y), limited(sum.z)};
+}
+
 /// The colour of a material without textures, in linear light.
 Vec3d expected_linear(const std::vector<Light>& lights, const Material& m, Vec3d p, Vec3d n,
                       Vec3d v) {
@@ -209,6 +253,38 @@ void each_pixel(const Camera& c, F&& f) {
     const double along = -dot(from, d), miss = dot(from, from) - along * along;
     if (miss < 1) f(x, y, from + d * (along - std::sqrt(1 - miss)), d * -1);
   }
+}
+
+Light classic_light(decltype(Light::kind) kind, const ClassicLight& classic) {
+  Light l = light(kind, 7, {0.1F, 0.2F, 0.3F});  // which do not count
+  l.classic = classic;
+  return l;
+}
+
+/// Lights of every kind but environments, for Shader::classic.
+std::vector<std::vector<Light>> sets_of_classic_lights() {
+  const SpotLight spot{{1, 1.5, 2}, {-1, -1.4F, -1.6F}, 4, 0.1F, 0.4F};
+  std::vector<std::vector<Light>> sets{
+      {light(AmbientLight{}, 0.4F, {1, 0.5F, 0.25F})},
+      {light(HemisphereLight{{1, 2, -1}, {0.3F, 0.1F, 0}}, 0.7F, {0.4F, 0.6F, 1})},
+      {light(DirectionalLight{{-3, -2, -1}}, 0.9F, {1, 0.9F, 0.8F})},
+      {light(PointLight{{-0.5, 1, 2}, 2.2F}, 2, {0.5F, 1, 0.5F})},
+      {light(spot, 3)},
+      {classic_light(DirectionalLight{{-3, -2, -1}},
+                     {{0.1F, 0.2F, 0.3F}, {0.4F, 0.5F, 0.6F}, {0.9F, 0.8F, 0.7F}})},
+      {classic_light(PointLight{{0.8, 1.2, 1.1}, 0.5F},
+                     {{0.2F, 0.1F, 0.1F}, {1, 1, 1}, {0.5F, 0.5F, 1}, {0.2F, 0.5F, 0.25F}})},
+      {classic_light(spot, {.diffuse = {2, 1, 1}, .attenuation = {0, 0, 0.5F}, .exponent = 10.5F})},
+      {classic_light(spot, {})},
+      {headlight(0.8F)}};
+  Light of_camera = classic_light(SpotLight{{1, 1, 0}, {-0.2F, -0.3F, -1}}, {.exponent = 3});
+  of_camera.of_camera = true;
+  sets.push_back({of_camera});
+  std::vector<Light> all = all_dimmed(sets);
+  for (Light& l : all)
+    if (l.classic) l.classic->diffuse = l.classic->diffuse * 0.3F;
+  sets.push_back(all);
+  return sets;
 }
 
 /// Lights of every kind, alone and together.
@@ -268,6 +344,100 @@ TEST(Lights, AreTheirFormulasOnASphere) {
       }
 }
 
+TEST(Lights, AreOpenGlsFormulaOnASphere) {
+  Ball ball;
+  const std::vector<ClassicMaterial> looks{{}, {0.8F, 1, 0.1F}, {1, 0, 0}, {0.3F, 0.03F, 0}};
+  for (const bool orthographic : {false, true})
+    for (const std::vector<Light>& lights : sets_of_classic_lights())
+      for (const ClassicMaterial& look : looks) {
+        Material m;
+        m.base_color = {0.7F, 0.5F, 0.3F, 1};
+        m.classic = look;
+        ball.materials = {m};
+        const Camera seen_by = camera(orthographic);
+        std::vector<Light> placed_lights;
+        for (const Light& l : lights) placed_lights.push_back(in_world(l, seen_by));
+        const Image<Vec4> color = draw(ball.view(), seen_by, lit_by(lights, Shader::classic));
+        int seen = 0, at_edges = 0;
+        each_pixel(seen_by, [&](int x, int y, Vec3d p, Vec3d v) {
+          const Vec4 c = color(x, y);
+          if (c.w == 0) return;  // rounding may end the ball here
+          ++seen;
+          const Vec3d e = expected_classic(placed_lights, m, p, p, v);
+          const double off =
+              std::max({std::abs(c.x - e.x), std::abs(c.y - e.y), std::abs(c.z - e.z)});
+          // Rounding may move the edge of a cone, and that of the lit half where light is mirrored.
+          at_edges += off > 1.0 / 255 ? 1 : 0;
+        });
+        EXPECT_GT(seen, 1500);
+        EXPECT_LE(at_edges, seen / 500)
+            << lights.size() << " lights of kind " << lights.front().kind.index() << ", shininess "
+            << look.shininess;
+      }
+}
+
+TEST(Lights, WithoutAnyClassicHasAHeadlight) {
+  Ball ball;
+  ball.materials.resize(1);
+  EXPECT_EQ(digest(draw(ball.view(), camera(false), lit_by({}, Shader::classic))),
+            digest(draw(ball.view(), camera(false), lit_by({headlight()}, Shader::classic))));
+}
+
+TEST(Lights, OfClassicAreCutBeforeTheTexture) {
+  // Two texels across, bright enough light for more than white, and a material's own colour.
+  Texture texture;
+  texture.image = {2, 1};
+  texture.image(0, 0) = {128, 64, 255, 255};
+  texture.image(1, 0) = {0, 200, 10, 255};
+  texture.mag = texture.min = TextureFilter::nearest;
+  texture.mipmaps = false;
+  Material m;
+  m.base_color = {1, 1, 0.5F, 1};
+  m.base_color_texture = 0;
+  m.classic.specular = 0;
+  Mesh wall;
+  wall.positions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
+  wall.indices = {0, 1, 2, 0, 2, 3};
+  wall.texcoords.values = {{0, 1}, {1, 1}, {1, 0}, {0, 0}};
+  const KeptInstances instances{wall.view()};
+  const std::vector<Material> materials{m};
+  const std::vector<Texture> textures{texture};
+  const Camera ahead{
+      .eye = {0, 0, 3}, .orthographic = true, .orthographic_height = 2, .far_plane = 9};
+  const auto lit = [&](float intensity) {
+    return draw({instances, materials, textures, {}}, ahead,
+                lit_by({light(AmbientLight{}, intensity)}, Shader::classic));
+  };
+  const double blue = display(0.5);
+  for (const float intensity : {0.5F, 3.0F}) {
+    const Image<Vec4> color = lit(intensity);
+    const auto cut = [&](double base) { return std::min(1.0, base * intensity); };
+    EXPECT_NEAR(color(10, 50).x, cut(1) * 128 / 255, 1e-4);
+    EXPECT_NEAR(color(10, 50).y, cut(1) * 64 / 255, 1e-4);
+    EXPECT_NEAR(color(10, 50).z, cut(blue), 1e-4);
+    EXPECT_NEAR(color(80, 50).y, cut(1) * 200 / 255, 1e-4);
+  }
+}
+
+TEST(Lights, OfClassicAreInRange) {
+  Ball ball;
+  ball.materials.resize(1);
+  const auto refuses = [&](const Light& l, const char* part) {
+    expect_refused(part,
+                   [&] { (void)draw(ball.view(), camera(false), lit_by({l}, Shader::classic)); });
+  };
+  refuses(classic_light(PointLight{}, {.ambient = {-1, 0, 0}}),
+          "light 0: its classic colours must lie in [0, 1e12]");
+  refuses(classic_light(PointLight{}, {.attenuation = {0, 0, 0}}),
+          "three numbers in [0, 1e12] of which one is not 0");
+  refuses(classic_light(SpotLight{}, {.exponent = 129}), "its exponent must lie in [0, 128]");
+  refuses(classic_light(AmbientLight{}, {}),
+          "its classic part is for directional lights, points and spots");
+  refuses(light(EnvironmentLight{sky_picture()}), "the shader classic has no environments");
+  ball.materials[0].classic.shininess = 1.5F;
+  refuses(headlight(), "material 0: specular and emission");
+}
+
 TEST(Lights, SayTheFixedLightOfPhong) {
   Ball ball;
   const auto fixed = draw(ball.view(), camera(false), lit_by({}, Shader::phong));
@@ -304,9 +474,10 @@ TEST(Lights, AreTheSameBitsForAllThatDraws) {
   const std::vector<Light> kit = light_kit();
   lights.insert(lights.end(), kit.begin(), kit.end());
   for (const bool orthographic : {false, true})
-    for (const Shader shader : {Shader::lambert, Shader::phong, Shader::material})
+    for (const Shader shader : {Shader::lambert, Shader::phong, Shader::material, Shader::classic})
       for (const int samples : {1, 4}) {
-        FrameOptions frame = lit_by(lights, shader);
+        FrameOptions frame =
+            lit_by(shader == Shader::classic ? sets_of_classic_lights().back() : lights, shader);
         frame.samples = samples;
         const Camera seen_by = camera(orthographic);
         SCOPED_TRACE(testing::Message() << name(shader) << ", " << samples << " samples");
@@ -437,13 +608,36 @@ TEST(Lights, CastTheSameShadowsWhateverDraws) {
   const Mixture mixture;
   std::vector<Light> lights = light_kit();
   lights.push_back(light(SpotLight{{1.5, 2, 2.5}, {-1, -1.4F, -1.6F}}, 3));
-  for (const Shader shader : {Shader::phong, Shader::material}) {
+  for (const Shader shader : {Shader::phong, Shader::material, Shader::classic}) {
     FrameOptions frame = lit_by(lights, shader);
     frame.shadows = true;
     SCOPED_TRACE(name(shader));
     EveryWay{{.threads = 2}}.same([&](const RendererOptions& by) {
       return digest(draw(mixture.scene(), camera(false), frame, by));
     });
+  }
+}
+
+TEST(Lights, OnlyThoseThatCastShadowsDo) {
+  BallOnFloor scene;
+  Camera seen_by = camera(false);
+  seen_by.eye = {0.5, 2.5, 6};
+  const Light sun = light(DirectionalLight{{-1, -1.2F, -0.4F}}, 0.8F);
+  for (const Shader shader : {Shader::phong, Shader::material}) {
+    FrameOptions frame = lit_by({sun}, shader);
+    const auto of = [&] { return digest(draw(scene.view(), seen_by, frame)); };
+    const Digest open = of();
+    frame.shadows = true;
+    const Digest shadowed = of();
+    EXPECT_FALSE(shadowed == open);
+    frame.lights[0].casts_shadows = false;
+    EXPECT_EQ(of(), open);
+    frame.lights[0].casts_shadows = true;
+    scene.instances[1].casts_shadows = false;  // the floor, which has nothing below it
+    EXPECT_EQ(of(), shadowed);
+    scene.instances[0].casts_shadows = false;
+    EXPECT_EQ(of(), open);
+    for (InstanceView& i : scene.instances) i.casts_shadows = true;
   }
 }
 

@@ -3,6 +3,8 @@
 // several instances. Ids, depth and coverage have the same bits everywhere, colours on one
 // instruction set. Material::opacity equals the frame's opacity for a part of the scene.
 #include <limits>
+#include <string>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -57,10 +59,10 @@ Scene masked_scene(std::uint64_t seed) {
   return scene;
 }
 
-class Materials : public testing::TestWithParam<float> {};
+class Materials : public testing::TestWithParam<std::tuple<Shader, float>> {};
 
 TEST_P(Materials, EqualOverTheFamily) {
-  EveryWay ways(RenderOptions(frame_of(Shader::material, GetParam())));
+  EveryWay ways(RenderOptions(frame_of(std::get<0>(GetParam()), std::get<1>(GetParam()))));
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
     SCOPED_TRACE(seed);
     const Scene scene = masked_scene(seed);
@@ -84,8 +86,13 @@ TEST_P(Materials, EqualOverTheFamily) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Opacity, Materials, testing::Values(1.0F, 0.4F),
-                         [](const auto& p) { return p.param < 1 ? "Translucent" : "Opaque"; });
+INSTANTIATE_TEST_SUITE_P(Opacity, Materials,
+                         testing::Combine(testing::Values(Shader::material, Shader::classic),
+                                          testing::Values(1.0F, 0.4F)),
+                         [](const auto& p) {
+                           return std::string(name(std::get<0>(p.param))) +
+                                  (std::get<1>(p.param) < 1 ? "Translucent" : "Opaque");
+                         });
 
 RenderOptions options(Shader shader, float opacity, Isa isa) {
   return RenderOptions(frame_of(shader, opacity), {.isa = isa});

@@ -179,7 +179,8 @@ struct LightHelp {
   const char *lights, *instead, *tone, *exposure;
 };
 constexpr LightHelp kOfMeshes{
-    "lights of the shaders lambert, phong and material. default: each shader's fixed light; "
+    "lights of the shaders lambert, phong, material and classic. default: each shader's fixed "
+    "light; "
     "headlight: one at the viewer; studio: key, fill, back and head light; file: the lights of "
     "glTF files (without this option: studio where only -o and no --shader is asked for, "
     "docs/light.md; else default)",

@@ -31,6 +31,7 @@ inline constexpr std::array kShaders{
     ShaderRow{.name = "phong", .normal = true, .base = true, .lights = true, .in_place = true},
     ShaderRow{.name = "material", .lights = true},
     ShaderRow{.name = "wireframe"},
+    ShaderRow{.name = "classic", .lights = true},
 };
 
 inline constexpr auto kLastShader = static_cast<Shader>(kShaders.size() - 1);

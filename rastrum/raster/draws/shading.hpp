@@ -33,7 +33,7 @@ struct LitScene;
 struct MaterialScene;
 struct VisibleBlock;
 
-/// The plain shaders (lit.hpp): all but `depth` and `material`.
+/// The plain shaders (lit.hpp): all but `depth`, `material` and `classic`.
 struct LitShading {
   Shader model = Shader::flat;
   const LitScene* scene = nullptr;

@@ -7,6 +7,8 @@
 
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/mat.hpp>
+#include <rastrum/raster/rules/srgb.hpp>
+#include <rastrum/raster/shade/material.hpp>
 #include <rastrum/scene/tilt.hpp>
 
 namespace rastrum::raster {
@@ -50,6 +52,27 @@ void set_cone(const SpotLight& spot, LightTerm& term) {
   term.cone_offset = static_cast<float>(-outer * scale);
 }
 
+Vec3 displayed(Vec3 linear) {
+  return {display_value(linear.x), display_value(linear.y), display_value(linear.z)};
+}
+
+/// `full`: its colour times its intensity.
+ClassicTerm classic_term(const Light& light, Vec3 full) {
+  ClassicTerm term;
+  term.diffuse = term.specular = full;
+  if (!light.classic) return term;
+  const ClassicLight& own = *light.classic;
+  term.ambient = own.ambient;
+  term.diffuse = own.diffuse;
+  term.specular = own.specular;
+  term.fades = true;
+  term.fade = own.attenuation;
+  if (const auto* const spot = std::get_if<SpotLight>(&light.kind))
+    term.cutoff = static_cast<float>(elementary::cos(static_cast<double>(spot->outer_rad)));
+  term.sixteenths = sixteenths(own.exponent);
+  return term;
+}
+
 PixelPlane plane(const Mat4d& clip_to_world, int row, int width, int height) {
   const double(&m)[4] = clip_to_world.m[row];
   return {static_cast<float>(m[3] - m[0] + m[1]), static_cast<float>(m[0] * 2 / width),
@@ -85,7 +108,7 @@ FrameLights::Axes axes_of(const EnvironmentLight& light, const Standpoint& frame
 }  // namespace
 
 FrameLights::FrameLights(std::span<const Light> lights, std::span<const LightShadow> shadows,
-                         const Camera& camera, int width, int height) {
+                         const Camera& camera, int width, int height, bool classic) {
   Standpoint frame;
   const auto camera_to_world = inverse(world_to_camera(camera));
   frame.camera_to_world = camera_to_world.value_or(Mat4d::identity());
@@ -105,13 +128,16 @@ FrameLights::FrameLights(std::span<const Light> lights, std::span<const LightSha
   maps_.reserve(pictures);  // maps must not move
   for (std::size_t i = 0; i < lights.size(); ++i) {
     const Light& light = lights[i];
-    const Vec3 full = light.color * light.intensity;
+    const auto colored = [&](Vec3 own) {
+      return (classic ? displayed(own) : own) * light.intensity;
+    };
+    const Vec3 full = colored(light.color);
     if (std::holds_alternative<AmbientLight>(light.kind)) {
       set_.ambient = set_.ambient + full;
       continue;
     }
     if (const auto* const h = std::get_if<HemisphereLight>(&light.kind)) {
-      const Vec3 below = h->below * light.intensity;
+      const Vec3 below = colored(h->below);
       const auto up = Vec3(direction(frame, light.of_camera, h->up));
       const Vec3 rise = (full - below) * 0.5F;
       set_.ambient = set_.ambient + (full + below) * 0.5F;
@@ -126,6 +152,7 @@ FrameLights::FrameLights(std::span<const Light> lights, std::span<const LightSha
     }
     LightTerm& term = terms_.emplace_back();
     term.radiance = full;
+    term.classic = classic_term(light, full);
     if (const auto* const d = std::get_if<DirectionalLight>(&light.kind)) {
       term.place = -Vec3(direction(frame, light.of_camera, d->direction));
     } else if (const auto* const p = std::get_if<PointLight>(&light.kind)) {

@@ -17,6 +17,15 @@
 
 namespace rastrum::raster {
 
+/// Shader::classic reads this of a light. Colours are display values.
+struct ClassicTerm {
+  Vec3 ambient, diffuse, specular;
+  bool fades = false;    ///< by `fade`, and a spot by `cutoff` and `sixteenths`
+  Vec3 fade;             ///< the light is divided by x + y d + z d²
+  float cutoff = 0;      ///< of a spot: the cosine of its half angle
+  float sixteenths = 0;  ///< of a spot: its exponent is so many sixteenths
+};
+
 /// A light with a direction or a place.
 struct LightTerm {
   enum class Kind : std::uint8_t { directional, point, spot };
@@ -27,7 +36,8 @@ struct LightTerm {
   float inv_range2 = 0;                   ///< 1 / range²
   Vec3 axis;                              ///< of a spot: its unit direction
   float cone_scale = 0, cone_offset = 0;  ///< saturate(cos · scale + offset)²
-  std::span<const ShadowMap> shadow;      ///< the finest first; empty: no shadows
+  ClassicTerm classic;
+  std::span<const ShadowMap> shadow;  ///< the finest first; empty: no shadows
 };
 
 /// A linear function of pixel and depth, for a point's place.
@@ -79,8 +89,9 @@ class FrameLights {
  public:
   /// `lights`: checked by check_lights; their environments must outlive this. `shadows`: one for
   /// each light, with pictures that must outlive this; empty: none.
+  /// `classic`: for Shader::classic, whose colours are display values.
   FrameLights(std::span<const Light> lights, std::span<const LightShadow> shadows,
-              const Camera& camera, int width, int height);
+              const Camera& camera, int width, int height, bool classic = false);
   FrameLights(const FrameLights&) = delete;
   FrameLights& operator=(const FrameLights&) = delete;
   [[nodiscard]] const LightSet& set() const { return set_; }

@@ -49,12 +49,12 @@ RASTRUM_LANES V3 mirrored_around(const LightSet& lights, const V3& d, F roughnes
   return sum;
 }
 
-struct Incoming {
+struct Arriving {
   V3 to_light;  ///< of unit length
-  V3 radiance;
+  F share;      ///< of the light
 };
-RASTRUM_LANES Incoming incoming(const LightTerm& t, const V3& place) {
-  if (t.kind == LightTerm::Kind::directional) return {set(t.place), set(t.radiance)};
+RASTRUM_LANES Arriving arriving(const LightTerm& t, const V3& place) {
+  if (t.kind == LightTerm::Kind::directional) return {set(t.place), set(1)};
   const V3 away = set(t.place) - place;
   const F square = at_least(dot(away, away), 1e-12F);
   const V3 l = away * (set(1) / square_root(square));
@@ -64,7 +64,17 @@ RASTRUM_LANES Incoming incoming(const LightTerm& t, const V3& place) {
     const F cone = clamp01(dot(set(t.axis), l) * set(-t.cone_scale) + set(t.cone_offset));
     share = share * (cone * cone);
   }
-  return {l, set(t.radiance) * share};
+  return {l, share};
+}
+
+struct Incoming {
+  V3 to_light;  ///< of unit length
+  V3 radiance;
+};
+RASTRUM_LANES Incoming incoming(const LightTerm& t, const V3& place) {
+  if (t.kind == LightTerm::Kind::directional) return {set(t.place), set(t.radiance)};
+  const Arriving a = arriving(t, place);
+  return {a.to_light, set(t.radiance) * a.share};
 }
 
 RASTRUM_LANES F on(const Vec4& r, const V3& p) {

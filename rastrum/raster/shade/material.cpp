@@ -37,14 +37,17 @@ struct Factor {
   const char* name;
 };
 
-std::array<Factor, 7> factors(const Material& m) {
+std::array<Factor, 10> factors(const Material& m) {
   return {{{{&m.base_color.x, 4}, "base_color"},
            {{&m.metallic, 1}, "metallic"},
            {{&m.roughness, 1}, "roughness"},
            {{&m.normal_scale, 1}, "normal_scale"},
            {{&m.occlusion_strength, 1}, "occlusion_strength"},
            {{&m.emissive.x, 3}, "emissive"},
-           {{&m.alpha_cutoff, 1}, "alpha_cutoff"}}};
+           {{&m.alpha_cutoff, 1}, "alpha_cutoff"},
+           {{&m.classic.specular, 1}, "specular"},
+           {{&m.classic.shininess, 1}, "shininess"},
+           {{&m.classic.emission, 1}, "emission"}}};
 }
 
 }  // namespace
@@ -69,7 +72,8 @@ MaterialDraw MaterialDraw::of(const InstanceView& instance) const {
 }
 
 MaterialScene::MaterialScene(const SceneView& scene, const Camera& camera, int width, int height,
-                             const TextureSet& textures) {
+                             const TextureSet& textures, bool as_classic)
+    : classic(as_classic) {
   // The normal matrices are the lit shaders'.
   const LitScene lit(scene, camera, width, height);
   rays = lit.rays;
@@ -85,7 +89,20 @@ MaterialScene::MaterialScene(const SceneView& scene, const Camera& camera, int w
     }
     draws[d].set(lit.draws[d], scene.instances[d]);
   }
+  const auto bind_classic = [&](const Material& m) {
+    BoundMaterial& b = materials.emplace_back();
+    b.base = display_value(m.base_color);
+    b.alpha_mode = m.alpha_mode;
+    b.alpha_cutoff = m.alpha_cutoff;
+    b.opacity = m.opacity;
+    b.unlit = m.unlit;
+    b.base_color = textures.find(m.base_color_texture, TexelUse::data);
+    b.alpha = textures.find(m.alpha_texture, TexelUse::data);
+    b.classic = m.classic;
+    b.sixteenths = sixteenths(128 * m.classic.shininess);
+  };
   const auto bind = [&](const Material& m) {
+    if (classic) return bind_classic(m);
     materials.push_back({m.base_color, m.metallic, m.roughness, m.normal_scale,
                          m.occlusion_strength, m.emissive, m.alpha_mode, m.alpha_cutoff, m.opacity,
                          m.unlit, textures.find(m.base_color_texture, TexelUse::color),
@@ -102,7 +119,7 @@ MaterialScene::MaterialScene(const SceneView& scene, const Camera& camera, int w
 }
 
 MaterialView MaterialScene::view() const {
-  return {materials, draws, rays, lights, display_curve().data()};
+  return {materials, draws, rays, lights, display_curve().data(), classic};
 }
 
 void check_materials(const InstanceRuns& runs) {
@@ -128,6 +145,12 @@ void check_materials(const InstanceRuns& runs) {
       throw Error(Errc::invalid_argument, "material " + std::to_string(i) +
                                               ": the opacity must lie in [0, 1], not " +
                                               number_text(o));
+    if (const ClassicMaterial& c = scene.materials[i].classic;
+        !(c.specular >= 0 && c.emission >= 0 && c.shininess >= 0 && c.shininess <= 1))
+      throw Error(Errc::invalid_argument,
+                  "material " + std::to_string(i) +
+                      ": specular and emission must not be negative, and shininess must lie in "
+                      "[0, 1]");
     for (const TextureReference& r : references(scene.materials[i]))
       if (r.texture != kNoTexture &&
           (r.texture < 0 || static_cast<std::size_t>(r.texture) >= textures))
@@ -158,14 +181,20 @@ void check_materials(const InstanceRuns& runs) {
   }
 }
 
-std::vector<std::uint8_t> texture_uses(const SceneView& scene, bool shading, bool blending) {
+std::vector<std::uint8_t> texture_uses(const SceneView& scene, bool shading, bool blending,
+                                       bool classic) {
   std::vector<std::uint8_t> uses(scene.textures.size());
+  const auto use = [&](std::int32_t texture, TexelUse as) {
+    uses[static_cast<std::size_t>(texture)] |= static_cast<std::uint8_t>(as);
+  };
   for (const Material& m : scene.materials) {
+    if (classic)
+      for (const std::int32_t texture : {m.base_color_texture, m.alpha_texture})
+        if (texture != kNoTexture) use(texture, TexelUse::data);
     const bool has_alpha =
         m.alpha_mode == AlphaMode::mask || (m.alpha_mode == AlphaMode::blend && blending);
     for (const TextureReference& r : references(m))
-      if (r.texture != kNoTexture && (shading || (r.alpha && has_alpha)))
-        uses[static_cast<std::size_t>(r.texture)] |= static_cast<std::uint8_t>(r.use);
+      if (r.texture != kNoTexture && (shading || (r.alpha && has_alpha))) use(r.texture, r.use);
   }
   return uses;
 }

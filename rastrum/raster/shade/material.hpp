@@ -22,8 +22,18 @@
 // the longer axis of a pixel's footprint, from the analytic derivatives of the weights. The result
 // is written with the sRGB transfer function; where something is translucent, after blending. Alpha
 // is alpha.hpp's business.
+//
+// Shader::classic reads the same scene as OpenGL's fixed pipeline does, in display values:
+//
+//   colour = texel · (1 ∧ (base · (ambient lights + emission) + Σ light) + Σ (1 ∧ shadowed light))
+//   light  = share · (base · (ambient + diffuse · n·l) + specular · material's specular · (n·h)ᵉ)
+//
+// a ∧ b is the lesser, share the part that attenuation, cone and shadow leave. A light with shadows
+// lights what faces it. Exponents are whole sixteenths, so that products and square roots make
+// them. The texture's codes are filtered as they are. Without lights there is a headlight.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -51,7 +61,14 @@ struct BoundMaterial {
   const MipChain* occlusion = nullptr;
   const MipChain* emissive = nullptr;
   const MipChain* alpha = nullptr;
+  ClassicMaterial classic{};
+  float sixteenths = 0;  ///< its classic exponent
 };
+
+/// A classic exponent in [0, 128] as whole sixteenths.
+[[nodiscard]] inline float sixteenths(float exponent) {
+  return std::floor(exponent * 16 + 0.5F);
+}
 
 struct MaterialDraw {
   const MeshView* mesh = nullptr;
@@ -77,6 +94,7 @@ struct MaterialView {
   ViewRays rays;
   const LightSet* lights = nullptr;  ///< as LitView's
   const double* curve = nullptr;     ///< display_curve()
+  bool classic = false;              ///< for Shader::classic: colours are display values
 
   [[nodiscard]] RASTRUM_HD const BoundMaterial& material_of(const MaterialDraw& draw,
                                                             std::uint64_t triangle) const {
@@ -93,10 +111,11 @@ struct MaterialScene {
   ViewRays rays;
   const LightSet* lights = nullptr;  ///< as LitScene's
   bool bent = false;                 ///< some material has a normal map
+  bool classic = false;              ///< as MaterialView's; then `lights` must be set
 
   /// `scene` and `textures` must outlive this.
   MaterialScene(const SceneView& scene, const Camera& camera, int width, int height,
-                const TextureSet& textures);
+                const TextureSet& textures, bool classic = false);
 
   [[nodiscard]] MaterialView view() const;
 };
@@ -106,8 +125,9 @@ struct MaterialScene {
 void check_materials(const InstanceRuns& runs);
 
 /// The uses TextureSet::update wants: all that `materials` read. Without `shading` only those that
-/// alpha comes from: of masks and, with `blending`, of AlphaMode::blend.
+/// alpha comes from: of masks and, with `blending`, of AlphaMode::blend. `classic`: also those that
+/// Shader::classic reads.
 [[nodiscard]] std::vector<std::uint8_t> texture_uses(const SceneView& scene, bool shading,
-                                                     bool blending);
+                                                     bool blending, bool classic = false);
 
 }  // namespace rastrum::raster

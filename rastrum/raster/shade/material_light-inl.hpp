@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// material_light.inl in lanes.
+// material_light.inl and classic_light.inl in lanes.
 #if defined(RASTRUM_RASTER_SHADE_MATERIAL_LIGHT_INL_HPP) == defined(HWY_TARGET_TOGGLE)
 #ifdef RASTRUM_RASTER_SHADE_MATERIAL_LIGHT_INL_HPP
 #undef RASTRUM_RASTER_SHADE_MATERIAL_LIGHT_INL_HPP
@@ -19,6 +19,7 @@ namespace rastrum::raster::HWY_NAMESPACE {
 namespace {
 
 #define RASTRUM_LANES HWY_INLINE
+#include <rastrum/raster/shade/classic_light.inl>
 #include <rastrum/raster/shade/material_light.inl>
 #undef RASTRUM_LANES
 

@@ -32,6 +32,7 @@ struct MaterialPoint {
 
 namespace scalar_lane {
 #define RASTRUM_LANES RASTRUM_HD inline
+#include <rastrum/raster/shade/classic_light.inl>
 #include <rastrum/raster/shade/material_light.inl>
 #undef RASTRUM_LANES
 }  // namespace scalar_lane
@@ -59,17 +60,21 @@ struct Sampler {
   }
 };
 
+/// The base colour without its texture.
+RASTRUM_HD inline Vec3 plain_color(const MaterialTriangle& t, const BoundMaterial& m,
+                                   const MaterialPoint& at) {
+  if (t.draw.colors.values.empty()) return {m.base.x, m.base.y, m.base.z};
+  Vec4 c[3];
+  t.colors(c);
+  for (Vec4& i : c) i = i * m.base;
+  return {at.interpolate(c[0].x, c[1].x, c[2].x), at.interpolate(c[0].y, c[1].y, c[2].y),
+          at.interpolate(c[0].z, c[1].z, c[2].z)};
+}
+
 /// The base colour in linear light, not lit.
 RASTRUM_HD inline Vec3 base_color(const MaterialTriangle& t, const BoundMaterial& m,
                                   const MaterialPoint& at, const Sampler& textures) {
-  Vec3 base{m.base.x, m.base.y, m.base.z};
-  if (!t.draw.colors.values.empty()) {
-    Vec4 c[3];
-    t.colors(c);
-    for (Vec4& i : c) i = i * m.base;
-    base = {at.interpolate(c[0].x, c[1].x, c[2].x), at.interpolate(c[0].y, c[1].y, c[2].y),
-            at.interpolate(c[0].z, c[1].z, c[2].z)};
-  }
+  Vec3 base = plain_color(t, m, at);
   if (m.base_color != nullptr) {
     const Texel c = textures.look_up<AllChannels>(*m.base_color);
     base = base * Vec3{c.r, c.g, c.b};
@@ -122,6 +127,21 @@ RASTRUM_HD inline float own_alpha(const MaterialTriangle& t, const BoundMaterial
   using namespace material_detail;
   const BoundMaterial& m = scene.material_of(t.draw, t.index);
   const Sampler textures(t, at);
+  if (scene.classic) {
+    scalar_lane::ClassicSurface s{own_base != nullptr ? *own_base : plain_color(t, m, at),
+                                  {},
+                                  m.classic.specular,
+                                  m.sixteenths,
+                                  m.classic.emission,
+                                  {1, 1, 1}};
+    if (own_base == nullptr && m.base_color != nullptr) {
+      const Texel c = textures.look_up<AllChannels>(*m.base_color);
+      s.texel = {c.r, c.g, c.b};
+    }
+    if (m.unlit) return s.base * s.texel;
+    s.normal = normal(scene, t, m, at, textures);
+    return scalar_lane::classic_light(*scene.lights, scene.rays, s, at.x, at.y, depth);
+  }
   scalar_lane::LitSurface s{own_base != nullptr ? *own_base : base_color(t, m, at, textures),
                             {},
                             m.metallic,

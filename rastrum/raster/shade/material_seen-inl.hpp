@@ -110,8 +110,7 @@ class MaterialOfTriangle : DrawFinder<MaterialDraw> {
       out.with_colors |= bit;
       Vec4 color[3];
       const auto face = static_cast<std::size_t>(t);
-      linear_colors(*look_, scene_.curve, {{3 * face, 3 * face + 1, 3 * face + 2}, face}, vertex,
-                    color);
+      shown_colors(*look_, scene_, {{3 * face, 3 * face + 1, 3 * face + 2}, face}, vertex, color);
       set_colors(color, *out.material[lane], lane, out);
     }
   }

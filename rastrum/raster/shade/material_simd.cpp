@@ -48,7 +48,12 @@ struct alignas(64) Surface {
     kEmissiveG,
     kEmissiveB,
     kUnlit,  ///< 1: the base colour is the result
-    kChannels
+    kChannels,
+    // The classic shader's, in the same places.
+    kSpecular = kMetallic,
+    kSixteenths = kRoughness,
+    kEmission = kOcclusion,
+    kTexelR = kEmissiveR
   };
   float channel[kChannels][64];
   float side[64];  ///< −1: the triangle is seen from behind; else 1
@@ -81,6 +86,25 @@ HWY_NOINLINE void light_block(const MaterialView& scene, const Surface& s,
       color = light_by(*scene.lights, rays, lit, at.px, at.py, load(depth));
     }
     store(written(choose(unlit, base, color), linear), out.r + i, out.g + i, out.b + i);
+  }
+}
+
+/// light_block for the classic shader.
+HWY_NOINLINE void light_classic_block(const MaterialView& scene, const Surface& s,
+                                      const VisibleBlock& block, BlockColors& out) {
+  const auto& c = s.channel;
+  for (std::size_t i = 0; i < 64; i += kLanes) {
+    if ((block.covered >> i & kAllLanes) == 0) continue;
+    const Points at(block, i);
+    const auto load3 = [&](int k) HWY_ATTR { return load(c[k] + i, c[k + 1] + i, c[k + 2] + i); };
+    const ClassicSurface lit{load3(Surface::kBaseR),          load3(Surface::kNormalX),
+                             load(c[Surface::kSpecular] + i), load(c[Surface::kSixteenths] + i),
+                             load(c[Surface::kEmission] + i), load3(Surface::kTexelR)};
+    alignas(64) float depth[kLanes];
+    for (std::size_t k = 0; k < kLanes; ++k) depth[k] = depth_of_key(block.keys[i + k]);
+    const V3 color = classic_light(*scene.lights, scene.rays, lit, at.px, at.py, load(depth));
+    const auto unlit = load(c[Surface::kUnlit] + i) > set(0);
+    store(choose(unlit, lit.base * lit.texel, color), out.r + i, out.g + i, out.b + i);
   }
 }
 
@@ -243,7 +267,7 @@ HWY_INLINE std::uint64_t pixels_of(const VisibleBlock& block, const BlockMateria
 /// Sets the values of material `m` with its textures, except for its normal map. `own_base`: base
 /// colours come from elsewhere.
 HWY_INLINE void set_material(const VisibleBlock& block, const BlockMaterials& of, std::size_t m,
-                             const Coordinates& at, bool own_base, Surface& out) {
+                             const Coordinates& at, bool own_base, bool classic, Surface& out) {
   const BoundMaterial& material = *of.material[m];
   const std::uint64_t pixels = pixels_of(block, of, m);
   const auto put = [&](F v, std::size_t first, int c)
@@ -255,6 +279,13 @@ HWY_INLINE void set_material(const VisibleBlock& block, const BlockMaterials& of
   };
   for_wanted(pixels, [&](std::size_t first) HWY_ATTR {
     put(set(material.unlit ? 1.0F : 0.0F), first, Surface::kUnlit);
+    if (classic) {
+      put(set(material.classic.specular), first, Surface::kSpecular);
+      put(set(material.sixteenths), first, Surface::kSixteenths);
+      put(set(material.classic.emission), first, Surface::kEmission);
+      put3(set(Vec3{1, 1, 1}), first, Surface::kTexelR);
+      return;
+    }
     put(set(material.metallic), first, Surface::kMetallic);
     put(set(material.roughness), first, Surface::kRoughness);
     put(set(1), first, Surface::kOcclusion);
@@ -277,6 +308,7 @@ HWY_INLINE void set_material(const VisibleBlock& block, const BlockMaterials& of
     put3(set(material.emission) * texel, first, Surface::kEmissiveR);
   });
   with(own_base ? nullptr : material.base_color, [&](std::size_t first, const V3& texel) HWY_ATTR {
+    if (classic) return put3(texel, first, Surface::kTexelR);
     const auto base = [&](int c) HWY_ATTR { return load(out.channel[c] + first); };
     put3(V3{base(Surface::kBaseR), base(Surface::kBaseG), base(Surface::kBaseB)} * texel, first,
          Surface::kBaseR);
@@ -365,9 +397,9 @@ struct BlockSurface {
     set_base(block, materials, surface);
   }
   /// Call it once coordinates are known.
-  HWY_INLINE void bring_materials(const VisibleBlock& block, bool own_base) {
+  HWY_INLINE void bring_materials(const VisibleBlock& block, bool own_base, bool classic) {
     for (std::size_t m = 0; m < materials.count; ++m)
-      set_material(block, materials, m, at, own_base, surface);
+      set_material(block, materials, m, at, own_base, classic, surface);
   }
 };
 
@@ -384,7 +416,7 @@ HWY_INLINE void see_by_bin(const MaterialView& scene, const VisibleBlock& block,
     interpolate(scene, block, BinLookup{bin, places + first}, mask_of(covered), first, out.textured,
                 out.at, out.surface);
   }
-  out.bring_materials(block, own_base);
+  out.bring_materials(block, own_base, scene.classic);
 }
 
 /// From the block alone.
@@ -398,7 +430,7 @@ HWY_INLINE void see_alone(const MaterialView& scene, const FrameGeometry& frame,
                     interpolate(scene, block, LaneLookup{t, look}, mine, first, out.textured,
                                 out.at, out.surface);
                   });
-  out.bring_materials(block, own_base);
+  out.bring_materials(block, own_base, scene.classic);
   if (out.bent) bend(block, of, out.materials, out.at, out.surface);
 }
 
@@ -413,7 +445,9 @@ void shade(const MaterialView& scene, const FrameGeometry& frame, const VisibleB
   if (own_base != nullptr)
     for (int c = 0; c < 3; ++c)
       std::memcpy(seen.surface.channel[Surface::kBaseR + c], own_base + 64 * c, 64 * sizeof(float));
-  if (scene.lights == nullptr)
+  if (scene.classic)
+    light_classic_block(scene, seen.surface, block, colors);
+  else if (scene.lights == nullptr)
     light_block<true>(scene, seen.surface, block, linear, colors);
   else
     light_block<false>(scene, seen.surface, block, linear, colors);

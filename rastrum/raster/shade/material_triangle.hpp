@@ -66,13 +66,14 @@ struct CoordinatePlane {
   }
 };
 
-/// Linear light at a triangle's corners, for a draw that has colours.
-RASTRUM_HD inline void linear_colors(const MaterialDraw& draw, const double* curve,
-                                     const TrianglePlace& place, const std::uint32_t (&vertex)[3],
-                                     Vec4 (&out)[3]) {
+/// Linear light, or display values for the classic shader, at a triangle's corners, for a draw that
+/// has colours.
+RASTRUM_HD inline void shown_colors(const MaterialDraw& draw, const MaterialView& scene,
+                                    const TrianglePlace& place, const std::uint32_t (&vertex)[3],
+                                    Vec4 (&out)[3]) {
   draw.colors.corners(place, vertex, out);
-  if (draw.color_space == ColorSpace::display)
-    for (Vec4& c : out) c = linear_from_display(curve, c);
+  if ((draw.color_space == ColorSpace::display) == scene.classic) return;
+  for (Vec4& c : out) c = scene.classic ? display_value(c) : linear_from_display(scene.curve, c);
 }
 
 struct MaterialTriangle {
@@ -82,7 +83,7 @@ struct MaterialTriangle {
     RASTRUM_HD OwnDraw() {}
   } own;
   const MaterialDraw& draw;
-  const double* curve;
+  const MaterialView& scene;
   std::uint64_t index;  ///< in its mesh
   TrianglePlace place;
   std::uint32_t vertex[3];
@@ -90,10 +91,10 @@ struct MaterialTriangle {
 
   /// `d`: the draw of `frame` with primitive `id`.
   template <class Geometry>
-  RASTRUM_HD MaterialTriangle(const MaterialView& scene, const Geometry& frame, const Draw& d,
+  RASTRUM_HD MaterialTriangle(const MaterialView& of, const Geometry& frame, const Draw& d,
                               std::uint64_t id)
-      : draw(draw_of(scene.draws[d.number], d, id)),
-        curve(scene.curve),
+      : draw(draw_of(of.draws[d.number], d, id)),
+        scene(of),
         index(d.of_copy(id - d.first_id).primitive),
         place(draw.mesh->place(index)) {
     d.vertices(id - d.first_id, vertex);
@@ -114,7 +115,7 @@ struct MaterialTriangle {
     attribute.corners(place, vertex, out);
   }
   /// Requires that the draw has colours.
-  RASTRUM_HD void colors(Vec4 (&out)[3]) const { linear_colors(draw, curve, place, vertex, out); }
+  RASTRUM_HD void colors(Vec4 (&out)[3]) const { shown_colors(draw, scene, place, vertex, out); }
   /// In world space. Requires that the mesh has normals.
   RASTRUM_HD void normals(Vec3 (&out)[3]) const {
     corners(draw.mesh->normals, out);

@@ -34,7 +34,7 @@ PlainSurface PlainLook::surface(const InstanceView& instance, bool colored) cons
   s.opacity = look_.opacity * instance.opacity * s.material->opacity;
   s.base = s.albedo = s.material->base_color;
   std::copy_n(&lit.draws.front().normal_matrix[0][0], 9, &s.normal_matrix[0][0]);
-  if (look_.model) {
+  if (!look_.is_linear()) {
     const Vec3 base = has_materials ? display_[m] : colored ? Vec3{1, 1, 1} : kDefaultBase;
     s.base = {base.x, base.y, base.z, s.base.w};
   }
@@ -46,7 +46,7 @@ PlainSurface PlainLook::surface(const InstanceView& instance, bool colored) cons
 }
 
 Vec4 PlainLook::shown(Vec4 color, ColorSpace space) const {
-  return converted(color, space, look_.model ? ColorSpace::display : ColorSpace::linear);
+  return converted(color, space, look_.is_linear() ? ColorSpace::linear : ColorSpace::display);
 }
 
 float PlainLook::alpha(const PlainSurface& s, float own) const {
@@ -69,11 +69,18 @@ Vec4 PlainLook::shade(const PlainSurface& s, const Vec4& base, const Vec3* norma
                                   : scalar_lane::light_by(*look_.lights, *look_.model, rays_, px,
                                                           py, depth_of_key(key), *normal, c);
   } else if (m.unlit || normal == nullptr) {
-    c = scalar_lane::written(c, linear_);
+    if (!look_.classic) c = scalar_lane::written(c, linear_);
   } else {
     const Vec3 away = rays_.d + rays_.dx * px + rays_.dy * py;
     const Vec3 n = scalar_lane::unit(*normal);
     const float side = dot(n, away) > 0 ? -1.0F : 1.0F;
+    if (look_.classic) {
+      const ClassicMaterial& k = m.classic;
+      const scalar_lane::ClassicSurface lit{
+          c, n * side, k.specular, sixteenths(128 * k.shininess), k.emission, {1, 1, 1}};
+      c = scalar_lane::classic_light(*look_.lights, rays_, lit, px, py, depth_of_key(key));
+      return {c.x * a, c.y * a, c.z * a, a};
+    }
     const scalar_lane::LitSurface lit{c, n * side, m.metallic, m.roughness, 1, m.emissive};
     c = look_.lights == nullptr
             ? scalar_lane::light(rays_, lit, px, py)

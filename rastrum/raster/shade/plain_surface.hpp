@@ -17,9 +17,13 @@ namespace rastrum::raster {
 
 struct SurfaceLook {
   std::optional<Shader> model;       ///< none: materials
+  bool classic = false;              ///< by Shader::classic; without a model
   bool blends = false;               ///< alpha counts
   float opacity = 1;                 ///< the frame's
   const LightSet* lights = nullptr;  ///< as in LitScene
+
+  /// Whether colours are linear light, and not display values.
+  [[nodiscard]] bool is_linear() const { return !model && !classic; }
 };
 
 /// An instance's part of its surfaces' look.

@@ -70,7 +70,7 @@ bool PointLineShader::shade(const FrameGeometry& frame, const VisibleBlock& bloc
     Vec3 normal;
     if (part.scalars.colors() != nullptr) {
       const Fragment& f = locator.locate(id, block.x0, block.y0, i, block.points);
-      base = part.scalars.color(f, draw.topology, !look_.look().model);
+      base = part.scalars.color(f, draw.topology, look_.look().is_linear());
     } else if (draw.topology == Topology::lines) {
       base = along(part, Way::shown, locator.locate(id, block.x0, block.y0, i, block.points));
     } else {

@@ -113,7 +113,7 @@ QuadricShader::Seen QuadricShader::seen(const Kept& k, std::uint64_t key,
     return {lerp(k.color[0], k.color[1], static_cast<float>(point.along)), normal};
   const SurfaceScalars& scalars = k.surface->scalars;
   const double per_px = scalars.colors()->has_isolines() ? k.quadric.along_per_px(h, point) : 0;
-  return {scalars.color(k.scalar, point.along, per_px, !look_.look().model), normal};
+  return {scalars.color(k.scalar, point.along, per_px, look_.look().is_linear()), normal};
 }
 
 std::uint64_t QuadricShader::test(const FrameGeometry& frame, const Piece& piece,

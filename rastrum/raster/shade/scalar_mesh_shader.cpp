@@ -20,7 +20,7 @@ ScalarMeshShader::ScalarMeshShader(const SurfaceLook& look, const SceneView& sce
     : look_(look),
       scalars_(std::move(scalars)),
       lit_(scene, camera, width, height),
-      materials_(scene, camera, width, height, textures) {
+      materials_(scene, camera, width, height, textures, look.classic) {
   lit_.lights = materials_.lights = look.lights;
   for (const SurfaceScalars& s : scalars_) isolines_ |= s.colors()->has_isolines();
   const auto is_ramp = [](const SurfaceScalars& s) { return s.colors()->is_ramp(); };
@@ -60,7 +60,7 @@ void ScalarMeshShader::color_each(const FrameGeometry& frame, const VisibleBlock
     const SurfaceScalars& scalars = scalars_[number];
     if (id != corners_of) scalars.at_corners(f, Topology::triangles, corner);
     corners_of = id;
-    const Vec4 own = scalars.color(corner, f.weights, Topology::triangles, !look_.model);
+    const Vec4 own = scalars.color(corner, f.weights, Topology::triangles, look_.is_linear());
     Vec3 base{own.x, own.y, own.z};
     if (is_wire) {
       const float line = wire_share(f);
@@ -113,9 +113,9 @@ void ScalarMeshShader::color_all(const FrameGeometry& frame, const VisibleBlock&
             c, value[static_cast<std::size_t>(i)], {corner[0][k], corner[1][k], corner[2][k]},
             weights_at(seen.planes.at(k), p.x, p.y, p.from_centre), Topology::triangles);
       }
-      surface.base[0][i] = look_.model ? c.x : linear_from_display(c.x);
-      surface.base[1][i] = look_.model ? c.y : linear_from_display(c.y);
-      surface.base[2][i] = look_.model ? c.z : linear_from_display(c.z);
+      surface.base[0][i] = look_.is_linear() ? linear_from_display(c.x) : c.x;
+      surface.base[1][i] = look_.is_linear() ? linear_from_display(c.y) : c.y;
+      surface.base[2][i] = look_.is_linear() ? linear_from_display(c.z) : c.z;
       alpha[i] = look_.blends ? clamped_alpha(opacity[k] * c.w) : 1;
     }
   }
