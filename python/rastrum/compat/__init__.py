@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Stand-ins for packages that are not maintained any more."""
+"""Stand-ins for packages that need OpenGL."""
