@@ -6,6 +6,6 @@
 set -euo pipefail
 while read -r _ shape look; do
   # shellcheck disable=SC2086
-  digest="$("$@" make "$shape" --quiet -o - | "$@" render - --format ply --look plain $look --size 320x240 --hash)"
+  digest="$("$@" make "$shape" --quiet -o - </dev/null | "$@" render - --format ply --look plain $look --size 320x240 --hash)"
   echo "${digest%% *}  $shape $look"
 done <"$(dirname "${BASH_SOURCE[0]}")/digests.txt"
