@@ -361,8 +361,7 @@ void GlMaterials::set_scene(const SceneView& scene) {
       Vec3 normals[3];
       raster::corner_normals(mesh, place, vertex, normals);
       Vec4 colors[3];
-      if (!draw.colors.empty())
-        raster::linear_colors(draw, raster::display_curve().data(), place, vertex, colors);
+      if (!draw.colors.empty()) raster::shown_colors(draw, materials, place, vertex, colors);
       for (std::size_t c = 0; c < 3; ++c) {
         const auto element = [&](const auto& a) {
           return a.values.empty() ? 0 : a.element(place, vertex, c);
