@@ -87,7 +87,7 @@ try_deb() {
   cp /etc/resolv.conf "$root/etc/resolv.conf"
   cp "$out"/*_"$(version)"-1_*.deb "$root/tmp"
   cp -r tests/install/user "$root/tmp/user"
-  "${inside[@]}" sh -c 'apt-get -qq install -y --no-install-recommends /tmp/rastrum_*.deb' >"$work/deb_try.log"
+  "${inside[@]}" sh -c 'apt-get -qq update && apt-get -qq install -y --no-install-recommends /tmp/rastrum_*.deb' >"$work/deb_try.log"
   diff <(packaging/digests.sh "${inside[@]}" rastrum) packaging/digests.txt
   "${inside[@]}" sh -ec 'apt-get -qq install -y --no-install-recommends /tmp/librastrum-dev_*.deb g++ cmake make pkgconf
     cmake -S /tmp/user -B /tmp/built -DCMAKE_BUILD_TYPE=Release && cmake --build /tmp/built && cd /tmp/built && ./core && ./io && ./family
