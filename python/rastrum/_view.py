@@ -99,8 +99,7 @@ class _Orbit:
     def camera(self):
         """The first one as it was given until it is moved, then with planes about the scene."""
         if self.first is not None:
-            made = self.first
-            return Camera(lambda size, ball: made)
+            return Camera._of(self.first)
         away = np.linalg.norm(self.back)
         if self.parallel:
             # An eye out of the scene; how far does not matter.

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Ground truth for data sets: the masks of each object, depth in millimetres, COCO's run lengths, and BOP's folder."""
 
-import functools
 import json
 import os
 import pathlib
@@ -15,7 +14,6 @@ from ._errors import ArgumentError, ArgumentTypeError, UnsupportedError, raises_
 from ._files import whole
 from ._render import _size, render
 from ._scene import Scene, as_scene
-
 
 __all__ = ["BopScene", "Seen", "millimetres", "objects", "run_lengths"]
 
@@ -36,10 +34,6 @@ def _box(mask):
     return [int(columns[0]), int(rows[0]), int(columns[-1] - columns[0] + 1), int(rows[-1] - rows[0] + 1)]
 
 
-def _constant(made, size, ball):
-    return made
-
-
 @raises_errors
 def objects(what, camera=None, *, size=(640, 480), **frame):
     """Returns {id: Seen} for each visible object of a scene, in the order of ids.
@@ -53,7 +47,7 @@ def objects(what, camera=None, *, size=(640, 480), **frame):
         raise UnsupportedError(f"objects: the parts of {scene.files[0]} cannot be drawn alone; give things, such as rastrum.Mesh")
     frame = {"transparency": "none", **frame, "outputs": "instance", "size": size}
     # The planes of a camera may depend on the scene: all pictures have those of the whole.
-    camera = Camera(functools.partial(_constant, as_camera(camera, scene)._for_size(_size(size), scene)))
+    camera = Camera._of(as_camera(camera, scene)._for_size(_size(size), scene))
     ids = render(scene, camera, **frame).instance
     parts = {}
     for place, thing in enumerate(scene.things):
@@ -140,12 +134,13 @@ class BopScene:
         k = np.asarray(K, np.float64)
         if k.shape != (3, 3):
             raise ArgumentError(f"K: must be (3, 3), not {k.shape}")
-        turn, move = _pose(world_to_camera, "world_to_camera", self._unit)
+        to_camera = matrix(world_to_camera, "world_to_camera")
+        turn, move = _pose(to_camera, "world_to_camera", self._unit)
         poses, about = [], []
         for obj_id, model_to_world, seen in objects:
             if isinstance(obj_id, bool) or not isinstance(obj_id, (int, np.integer)):
                 raise ArgumentTypeError(f"objects: obj_id must be a whole number, not {obj_id!r}")
-            r, t = _pose(product(matrix(world_to_camera, "world_to_camera"), matrix(model_to_world, "model_to_world")), "model_to_world", self._unit)
+            r, t = _pose(product(to_camera, matrix(model_to_world, "model_to_world")), "model_to_world", self._unit)
             poses.append({"cam_R_m2c": r, "cam_t_m2c": t, "obj_id": int(obj_id)})
             about.append({"bbox_obj": _box(seen.mask), "bbox_visib": _box(seen.visible),
                           "px_count_all": int(np.count_nonzero(seen.mask)),

@@ -372,7 +372,7 @@ def _fit(together, scene, view, up, fov, orthographic, size, notes):
         return list(way), list(upward), float(fov), bool(orthographic), width, height
     arguments = together.alike(checked)
     made = _r.fit_of_ranks(together.ranks, scene._made, *arguments, notes)
-    return Camera(lambda size, ball: made)
+    return Camera._of(made)
 
 
 def _numbers(parts, instances):

@@ -324,7 +324,7 @@ class Renderer:
         self._refuse_closed()
         colored = "color" in outputs
         self._update()
-        self.left_out = self._not_drawn()
+        self.left_out = tuple(sorted(text for text, applies in self._not_drawn().items() if applies))
         projection, view = self._matrices()
         camera = _seen_by(projection, view)
         look = {"size": (self._width, self._height)}
@@ -347,15 +347,13 @@ class Renderer:
             raise RuntimeError("render cannot be called after close.")
 
     def _not_drawn(self):
-        scene = self._scene
-        flags, geoms = scene.flags, scene.geoms[:scene.ngeom]
-        said = {"fog is not drawn": flags[_FLAGS.mjRND_FOG], "lines of faces are not drawn alone": flags[_FLAGS.mjRND_WIREFRAME],
+        flags = self._scene.flags
+        haze, labels, textures = self._of_geoms
+        return {"fog is not drawn": flags[_FLAGS.mjRND_FOG], "lines of faces are not drawn alone": flags[_FLAGS.mjRND_WIREFRAME],
                 "transparent things are blended, not added": flags[_FLAGS.mjRND_ADDITIVE],
                 "faces seen from behind are not drawn": not flags[_FLAGS.mjRND_CULL_FACE],
-                "haze is not drawn": flags[_FLAGS.mjRND_HAZE] and any(g.type == _PLANE and g.size[0] <= 0 for g in geoms),
-                "labels are not drawn": any(g.type == _LABEL or g.label for g in geoms),
-                "textures of flexes are not drawn": any(g.type == _FLEX and self._texture_of(g)[0] >= 0 for g in geoms)}
-        return tuple(sorted(text for text, applies in said.items() if applies))
+                "haze is not drawn": flags[_FLAGS.mjRND_HAZE] and haze, "labels are not drawn": labels,
+                "textures of flexes are not drawn": textures}
 
     def _reflect(self, picture, mirror, projection, view, look):
         """Adds to a mirror what a camera behind it sees in front of it. A box mirrors by its upper side. Only the part of the picture
@@ -445,13 +443,15 @@ class Renderer:
         before, soft_before = (np.zeros((0, 0), np.uint8), None) if self._known is None else self._known
         if now.shape == before.shape and soft == soft_before and np.array_equal(now, before):
             return
-        things, all_geoms = [], scene.geoms
+        things, all_geoms = [], scene.geoms[:n]
         for i in range(n):
             stays = i < len(before) and all_geoms[i].type not in (_FLEX, _SKIN) and np.array_equal(now[i], before[i])
             things.append(self._things[i] if stays else self._thing(i, all_geoms[i]))
         # At once, so that an exception before leaves all as it was.
         self._known, self._things, self._scenes = (now, soft), things, {}
-        self._mirrors = [i for i in range(n) if all_geoms[i].reflectance > 0 and all_geoms[i].type in (_PLANE, _BOX)]
+        self._mirrors = [i for i, g in enumerate(all_geoms) if g.reflectance > 0 and g.type in (_PLANE, _BOX)]
+        self._of_geoms = (any(g.type == _PLANE and g.size[0] <= 0 for g in all_geoms), any(g.type == _LABEL or g.label for g in all_geoms),
+                          any(g.type == _FLEX and self._texture_of(g)[0] >= 0 for g in all_geoms))
 
     def _scene_of(self, colored):
         """The scene for colours, which has the sky, or for depth and segmentation."""
