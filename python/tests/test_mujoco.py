@@ -83,6 +83,20 @@ def test_depth_and_segmentation_are_the_geometrys(model, data):
         assert renderer.render()[0, 0] == pytest.approx(model.vis.map.zfar * model.stat.extent, rel=1e-5)
 
 
+def test_nothing_is_beyond_the_far_plane():
+    near = mujoco.MjModel.from_xml_string("""<mujoco><statistic extent="1"/><visual><map zfar="4"/></visual><worldbody>
+      <camera name="c" pos="0 0 6" xyaxes="1 0 0 0 1 0"/><geom type="sphere" size=".5" pos="0 0 3"/><geom type="box" size="3 3 .1"/>
+    </worldbody></mujoco>""")
+    data = mujoco.MjData(near)
+    mujoco.mj_forward(near, data)
+    with Renderer(near, 60, 80) as renderer:
+        renderer.update_scene(data, "c")
+        renderer.enable_segmentation_rendering()
+        assert set(renderer.render()[..., 0].ravel().tolist()) == {-1, 0}
+        renderer.enable_depth_rendering()
+        assert renderer.render().max() == pytest.approx(4)
+
+
 def test_things_move(model, data):
     with Renderer(model, 60, 80) as renderer:
         renderer.enable_segmentation_rendering()
@@ -176,7 +190,9 @@ def test_an_exception_leaves_all_as_it_was(model, data, monkeypatch):
             with pytest.raises(ZeroDivisionError):
                 renderer.render()
         changed = rr.digest(renderer.render())
-        assert changed != expected
+        with Renderer(model, 60, 80, samples=1) as fresh:
+            fresh.update_scene(data, "above")
+            assert changed == rr.digest(fresh.render()) != expected
         model.geom_rgba[geom(model, "ball")] = 1
         data.qpos[0] = 0
         mujoco.mj_forward(model, data)
@@ -193,8 +209,16 @@ def test_the_model_is_read_again(model, data):
         model.tex_data[first:first + 64 * 64 * 3] = 255
         assert rr.digest(renderer.render()) == before
         renderer.read_model_again()
-        assert rr.digest(renderer.render()) != before
+        textured = rr.digest(renderer.render())
+        assert textured != before
         model.tex_data[:] = kept
+        heights = model.hfield_data.copy()
+        model.hfield_data[:] = np.arange(heights.size) % 3 / 2
+        renderer.read_model_again()
+        assert rr.digest(renderer.render()) not in (before, textured)
+        model.hfield_data[:] = heights
+        renderer.read_model_again()
+        assert rr.digest(renderer.render()) == before
 
 
 def test_a_mirror_reflects(model):
@@ -205,6 +229,7 @@ def test_a_mirror_reflects(model):
     with Renderer(mirroring, 120, 160, samples=1) as renderer:
         renderer.update_scene(data, "side")
         seen = renderer.render()
+        assert np.array_equal(seen, renderer.render())
         renderer.scene.flags[mujoco.mjtRndFlag.mjRND_REFLECTION] = 0
         brighter = (seen.astype(int) - renderer.render()).max(-1)
         rows = np.argwhere(brighter > 30)[:, 0]
