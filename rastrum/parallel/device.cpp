@@ -51,7 +51,9 @@ std::string_view name(Isa isa) {
   return name_in({"scalar", "sse4", "avx2", "avx512", "neon", "wasm"}, isa);
 }
 
-std::vector<Isa> available_isas() {
+namespace {
+
+std::vector<Isa> find_isas() {
   std::vector<Isa> isas{Isa::scalar};
 #if HWY_ARCH_X86
   // The features that Highway's targets of these names use. Every processor with AVX2, BMI2 and FMA
@@ -80,6 +82,14 @@ std::vector<Isa> available_isas() {
   if ((HWY_TARGETS & HWY_WASM) != 0) isas.push_back(Isa::wasm);
 #endif
   return isas;
+}
+
+}  // namespace
+
+std::vector<Isa> available_isas() {
+  static const std::vector<Isa> kFound =
+      find_isas();  // asking takes microseconds in a virtual machine
+  return kFound;
 }
 
 Isa choose_isa(std::optional<Isa> wanted) {

@@ -49,6 +49,8 @@ Scene masked_scene(std::uint64_t seed) {
   scene.materials[1].normal_texture = 3;
   scene.materials[2].base_color = {0.3F, 0.8F, 0.2F, 1};
   scene.materials[2].metallic = 0.2F;
+  scene.materials[1].classic.shininess = 0.03F;
+  scene.materials[2].classic.shininess = 0.71F;
   for (std::uint32_t i = 0; i < 3; ++i) {
     scene.meshes[i].material = i;
     Mat4d m = Mat4d::identity();

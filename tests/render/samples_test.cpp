@@ -111,8 +111,9 @@ TEST_F(Samples, OfPointsAndLinesAreTheReferences) {
 TEST_F(Samples, OfClippedTrianglesAreTheReferences) {
   const LayerScene layers = overlapping_pieces();
   const OneInstance scene(layers.mesh.view());
-  for (int i = 0; i < 3 * static_cast<int>(all_.size()); ++i) {
-    const FrameOptions o = options_of(i, 64, 64);
+  for (int i = 0; i < 6 * static_cast<int>(all_.size()); ++i) {
+    FrameOptions o = options_of(i, 64, 64);
+    if (i % 2 == 1) o.lights = {{.kind = PointLight{.position = {1, 2, 3}}}};
     // Odd, so without overdraw: it counts pieces here, triangles in the reference.
     ASSERT_NO_FATAL_FAILURE(expect_same(scene.view(), layers.camera, o, 2 * i + 1));
   }

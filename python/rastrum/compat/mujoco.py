@@ -41,10 +41,20 @@ def _unit(v):
     return v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-30)
 
 
+# Lists of numbers: NumPy takes longer for so few.
+
 def _cross(a, b):
-    """np.cross takes ten times as long."""
-    (ax, ay, az), (bx, by, bz) = a.tolist(), b.tolist()
-    return np.array((ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx))
+    (ax, ay, az), (bx, by, bz) = a, b
+    return [ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx]
+
+
+def _dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def _of_length_1(v):
+    length = max(math.sqrt(_dot(v, v)), 1e-30)
+    return [x / length for x in v]
 
 
 def _kind_of(light):
@@ -57,7 +67,9 @@ def _kind_of(light):
 
 def _seen_by(projection, view):
     """Camera.opengl without its checks."""
-    return _Camera(functools.partial(_of_matrix, _product(projection, view), "opengl"))
+    columns = list(zip(*view))
+    seen = [[a * x + b * y + c * z + d * w for x, y, z, w in columns] for a, b, c, d in projection]
+    return _Camera(functools.partial(_of_matrix, np.array(seen), "opengl"))
 
 
 # Geometry in a geom's own frame: (positions, faces, normals, coordinates for textures); the last are those of a shape of size 1.
@@ -130,6 +142,12 @@ def _grid(x, y, z):
     return points, np.concatenate([np.stack([a, a + 1, a + n + 1], 1), np.stack([a, a + n + 1, a + n], 1)])
 
 
+def _memory(lights):
+    """The memory of structures side by side, a row each, from the first one's `pos` on."""
+    first, second = (light.pos.__array_interface__["data"][0] for light in lights[:2])
+    return np.frombuffer((ctypes.c_ubyte * ((second - first) * len(lights))).from_address(first), np.uint8).reshape(len(lights), -1)
+
+
 class _Geoms:
     """The geoms of an MjvScene as arrays over its memory: n rows of all bytes, and of some fields."""
 
@@ -196,7 +214,8 @@ class Renderer:
         self._places = np.tile(np.eye(4), (max_geom, 1, 1))  # things read their rows in place
         self._objects = np.empty((max_geom + 2, 2), np.int32)  # a row for the sky, too
         self._known = None  # (bytes of geoms, what soft things have of the scene) that _things are made of
-        self._things, self._shapes, self._textures, self._scenes, self._lit = [], {}, {}, {}, {}
+        self._things, self._shapes, self._textures, self._scenes = [], {}, {}, {}
+        self._light_bytes, self._lit = _memory(self._scene.lights), (None, [])
         self._sky = next((i for i in range(model.ntex) if model.tex_type[i] == mujoco.mjtTexture.mjTEXTURE_SKYBOX), None)
         self._sky_thing, self._mirrors, self._workers, self.left_out = None, [], [], ()
 
@@ -305,7 +324,10 @@ class Renderer:
 
     @staticmethod
     def _rgb(picture):
-        return np.ascontiguousarray(picture.color[..., :3])
+        rgb = np.empty((*picture.color.shape[:2], 3), np.uint8)
+        for k in range(3):  # one copy of all three takes four times as long
+            rgb[..., k] = picture.color[..., k]
+        return rgb
 
     def _depth(self, picture):
         depth = picture.depth
@@ -331,9 +353,9 @@ class Renderer:
         if not colored:
             return self._renderer.render(self._scene_of(False), camera, outputs=outputs, transparency="none", cull="back", **look)
         lights, shadows = self._lights()
-        center = np.linalg.norm(self._model.stat.center - self._eye)
-        look.update(shader="classic", lights=lights, shadows=shadows, background="black",
-                    shadow_distance=float(center + self._model.stat.extent), samples=self._samples if "depth" not in outputs else 1)
+        reach = math.dist(self._model.stat.center, self._eye) + self._model.stat.extent
+        look.update(shader="classic", lights=lights, shadows=shadows, background="black", shadow_distance=reach,
+                    samples=self._samples if "depth" not in outputs else 1)
         mirrors = self._mirrors if self._scene.flags[_FLAGS.mjRND_REFLECTION] else ()
         if mirrors:
             outputs = tuple({*outputs, "instance", "normal"})
@@ -369,7 +391,8 @@ class Renderer:
         across[:3, 3] = 2 * (normal * place).sum() * normal
         rows, columns = (np.flatnonzero(on.any(axis)) for axis in (1, 0))
         part = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
-        (height, width), cropped = on[part].shape, projection.copy()
+        (height, width), projection = on[part].shape, np.array(projection)
+        cropped = projection.copy()
         for row, first, count, all_, up in ((0, columns[0], width, self._width, 1), (1, rows[0], height, self._height, -1)):
             low, high = up * (2 * first / all_ - 1), up * (2 * (first + count) / all_ - 1)
             cropped[row] = up * (2 * projection[row] - (low + high) * projection[3]) / (high - low)
@@ -378,7 +401,7 @@ class Renderer:
         try:
             for thing in hidden:
                 thing.visible = False
-            seen = self._renderer.render(self._scenes[True], _seen_by(cropped, _product(view, across)), cull="front",
+            seen = self._renderer.render(self._scenes[True], _seen_by(cropped, _product(np.array(view), across)), cull="front",
                                          clip_planes=[[*normal, -(normal * place).sum()]], **look).color[on[part]]
         finally:
             for thing in hidden:
@@ -389,47 +412,46 @@ class Renderer:
     # The camera.
 
     def _matrices(self):
-        """Projection and view."""
+        """Rows of the projection and of the view."""
         view = mujoco.mjv_averageCamera(self._scene.camera[0], self._scene.camera[1])
-        eye, ahead, up = (np.array(v, np.float64) for v in (view.pos, view.forward, view.up))
-        ahead = _unit(ahead)
-        right = _unit(_cross(ahead, up))
-        to_camera = np.eye(4)
-        to_camera[:3, :3] = right, _cross(right, ahead), -ahead
-        to_camera[:3, 3] = -(to_camera[:3, :3] * eye).sum(1)
+        eye, ahead, up = (v.tolist() for v in (view.pos, view.forward, view.up))
+        ahead = _of_length_1(ahead)
+        right = _of_length_1(_cross(ahead, up))
+        axes = right, _cross(right, ahead), [-x for x in ahead]
+        to_camera = [[*axis, -_dot(axis, eye)] for axis in axes] + [[0.0, 0.0, 0.0, 1.0]]
         half = view.frustum_width or 0.5 * self._width / self._height * (view.frustum_top - view.frustum_bottom)
         l, r, b, t = view.frustum_center - half, view.frustum_center + half, view.frustum_bottom, view.frustum_top
         n, f = view.frustum_near, 4.0 * view.frustum_far  # the sky lies behind MuJoCo's far plane
-        p = np.zeros((4, 4))
         if view.orthographic:
-            p[0, 0], p[0, 3], p[1, 1], p[1, 3] = 2 / (r - l), -(r + l) / (r - l), 2 / (t - b), -(t + b) / (t - b)
-            p[2, 2], p[2, 3], p[3, 3] = -2 / (f - n), -(f + n) / (f - n), 1
+            rows = ([2 / (r - l), 0.0, 0.0, -(r + l) / (r - l)], [0.0, 2 / (t - b), 0.0, -(t + b) / (t - b)],
+                    [0.0, 0.0, -2 / (f - n), -(f + n) / (f - n)], [0.0, 0.0, 0.0, 1.0])
         else:
-            p[0, 0], p[0, 2], p[1, 1], p[1, 2] = 2 * n / (r - l), (r + l) / (r - l), 2 * n / (t - b), (t + b) / (t - b)
-            p[2, 2], p[2, 3], p[3, 2] = -(f + n) / (f - n), -2 * f * n / (f - n), -1
+            rows = ([2 * n / (r - l), 0.0, (r + l) / (r - l), 0.0], [0.0, 2 * n / (t - b), (t + b) / (t - b), 0.0],
+                    [0.0, 0.0, -(f + n) / (f - n), -2 * f * n / (f - n)], [0.0, 0.0, -1.0, 0.0])
         self._far, self._eye = view.frustum_far, eye
-        return p, to_camera
+        return rows, to_camera
 
     # The lights.
 
     def _lights(self):
         scene = self._scene
-        keys = [(_kind_of(light), light.castshadow, light.cutoff, light.exponent, *(tuple(getattr(light, name)) for name in (
-            "pos", "dir", "ambient", "diffuse", "specular", "attenuation"))) for light in scene.lights[:scene.nlight]]
-        self._lit = {key: self._lit.get(key) or self._light(*key) for key in keys}
-        made = [self._lit[key] for key in keys] or [_Light.ambient(intensity=0)]
+        now = self._light_bytes[:scene.nlight].tobytes()
+        if now != self._lit[0]:
+            self._lit = now, [self._light(light) for light in scene.lights[:scene.nlight]] or [_Light.ambient(intensity=0)]
+        made = self._lit[1]
         return made, bool(scene.flags[_FLAGS.mjRND_SHADOW]) and any(light._made.throws_shadows for light in made)
 
     @staticmethod
-    def _light(kind, casts, cutoff, exponent, pos, ahead, ambient, diffuse, specular, attenuation):
-        look = {"casts_shadows": bool(casts), "classic": {"ambient": ambient, "diffuse": diffuse, "specular": specular}}
+    def _light(light):
+        kind = _kind_of(light)
+        look = {"casts_shadows": bool(light.castshadow), "classic": {name: tuple(getattr(light, name)) for name in ("ambient", "diffuse", "specular")}}
         if kind == "directional":
-            return _Light.directional(ahead, **look)
-        look["classic"]["attenuation"] = attenuation if any(attenuation) else (1, 0, 0)
-        if kind != "spot" or cutoff > 90:
-            return _Light.point(pos, **look)
-        look["classic"]["exponent"] = min(float(exponent), 128.0)
-        return _Light.spot(pos, ahead, 0.0, max(float(cutoff), 0.01), **look)
+            return _Light.directional(tuple(light.dir), **look)
+        look["classic"]["attenuation"] = tuple(light.attenuation) if any(light.attenuation) else (1, 0, 0)
+        if kind != "spot" or light.cutoff > 90:
+            return _Light.point(tuple(light.pos), **look)
+        look["classic"]["exponent"] = min(float(light.exponent), 128.0)
+        return _Light.spot(tuple(light.pos), tuple(light.dir), 0.0, max(float(light.cutoff), 0.01), **look)
 
     # The geoms.
 

@@ -139,6 +139,19 @@ HWY_INLINE bool none(Mask mask) {
   return hn::AllFalse(hn::DFromV<F>(), mask);
 }
 
+/// Calls use(value, mask of the lanes that have it) for each value in `v`, none a NaN.
+template <class Use>
+HWY_INLINE void for_each_value(F v, const Use& use) {
+  const hn::DFromV<F> d;
+  for (auto rest = v == v;;) {
+    const float value = hn::ExtractLane(v, hn::FindKnownFirstTrue(d, rest));
+    const auto here = v == set(value);
+    use(value, here);
+    rest = hn::AndNot(here, rest);
+    if (none(rest)) return;
+  }
+}
+
 /// Calls of.at for each lane. It makes a vector from a vector and a number.
 template <class Of>
 HWY_INLINE V3 lane_by_lane(const Of& of, const V3& a, F b) {

@@ -15,11 +15,6 @@ namespace {
 constexpr std::uint16_t kUncovered = 64 * (1 + kMaxSamples);
 }  // namespace
 
-struct SampledColors::Place {
-  std::uint64_t key = 0;
-  SampleOffset at{};  ///< from the pixel's centre
-};
-
 /// The edges of a triangle's piece: base + a x + b y ≥ 0 is inside, in n.8.
 struct SampledColors::ExactEdges {
   std::int64_t base[3];
@@ -70,36 +65,94 @@ struct SampledColors::Clipped {
   Piece pieces[kMaxPieces];
 };
 
-/// Finds places. Neighbours, even in the next block, mostly share primitives, so some are kept.
+/// Finds places in pixels, from their centres, and depths there. Neighbours, even in the next
+/// block, mostly share primitives, so some are kept.
 class SampledColors::Finder {
  public:
   Finder(const BinContext& context, const SampledColors& colors)
-      : frame_(*context.frame),
+      : context_(context),
+        frame_(*context.frame),
         offsets_(sample_offsets(context.request->samples)),
-        wants_depth_(wants_depth(context.request->shading)),
         kept_(colors.kept_.get()),
         planes_(colors.planes_.get()),
         clipped_(colors.clipped_.get()) {}
 
-  /// Finds where in the pixel the primitive of `key`, which some sample sees, is shaded. `all`: all
-  /// samples see it, and so would the centre between them.
-  Place find(std::uint64_t key, int x, int y, bool all) {
+  /// Where in the pixel primitive `low`, which some sample sees, is shaded. `all`: all samples see
+  /// it, and so would the centre between them.
+  SampleOffset find(std::uint64_t low, int x, int y, bool all) {
+    const Primitive& p = primitive(low);
+    if (p.kind == Primitive::Kind::point_or_line) return {};
+    if (p.kind == Primitive::Kind::clipped) {
+      const Clipped& c = clipped(low);
+      return first_covered([&](SampleOffset at) {
+        return std::any_of(c.edges, c.edges + c.count,
+                           [&](const ExactEdges& edges) { return edges.covers(x, y, at); });
+      });
+    }
+    if (all) return {};
+    return first_covered([&](SampleOffset at) { return p.edges.covers(x, y, at); });
+  }
+  /// `key` with the depth at the place `at` in a pixel, which the primitive covers.
+  std::uint64_t key_at(std::uint64_t key, int x, int y, SampleOffset at) {
     const std::uint64_t low = key & kIdMask;
-    Primitive& p = kept_[low % kKept];
-    if (p.low != low) begin(low, p);
-    if (p.kind == Primitive::Kind::point_or_line) return {key, {}};
-    if (p.kind == Primitive::Kind::clipped) return find_clipped(key, x, y);
-    if (all) return {wants_depth_ ? key_at(p, {}, x, y) : key, {}};
-    SampleOffset at{};
-    if (!p.edges.covers(x, y, at))
-      for (const SampleOffset offset : offsets_) {
-        at = offset;  // some sample covers
-        if (p.edges.covers(x, y, at)) break;
+    Primitive& p = primitive(low);
+    if (p.kind == Primitive::Kind::point_or_line) return key;
+    if (p.kind == Primitive::Kind::triangle) return key_of(plane(p), at, x, y);
+    const Clipped& c = clipped(low);
+    std::uint64_t nearest = 0;
+    for (int i = 0; i < c.count; ++i)
+      if (c.edges[i].covers(x, y, at)) nearest = std::max(nearest, key_of(c.pieces[i], at, x, y));
+    return nearest == 0 ? key : nearest;
+  }
+  /// In the pixels `mask` of block (bx, by) all samples see the primitive of the key. Returns the
+  /// pixels whose centre it covers. With `depths`, their keys get the depth there.
+  std::uint64_t centre(int bx, int by, std::uint64_t mask, bool depths, std::uint64_t* keys) {
+    std::uint64_t covered = 0;
+    Block block{0, static_cast<std::uint16_t>(bx), static_cast<std::uint16_t>(by), 0};
+    while (mask != 0) {
+      const std::uint64_t low = keys[std::countr_zero(mask)] & kIdMask;
+      std::uint64_t run = 0;
+      for (; mask != 0 && (keys[std::countr_zero(mask)] & kIdMask) == low; mask &= mask - 1)
+        run |= mask & -mask;
+      Primitive& p = primitive(low);
+      if (p.kind == Primitive::Kind::clipped) {
+        const Clipped& c = clipped(low);
+        std::uint64_t by_pieces = 0;
+        for (int i = 0; i < c.count; ++i) {
+          block.mask = 0;
+          context_.kernel->masks(&c.pieces[i], &block, 1);
+          block.mask &= run;
+          if (depths && block.mask != 0) set_depths(c.pieces[i], block, by_pieces, keys);
+          by_pieces |= block.mask;
+        }
+        covered |= by_pieces;
+        continue;
       }
-    return {wants_depth_ ? key_at(p, at, x, y) : key, at};
+      covered |= run;
+      block.mask = run;
+      if (depths && p.kind == Primitive::Kind::triangle) set_depths(plane(p), block, 0, keys);
+    }
+    return covered;
   }
 
  private:
+  /// The centre or else the first sample that is covered; some is.
+  template <class Covers>
+  SampleOffset first_covered(const Covers& covers) const {
+    if (covers(SampleOffset{})) return {};
+    const auto at = std::ranges::find_if(offsets_, covers);
+    return at == offsets_.end() ? offsets_.back() : *at;
+  }
+  /// Sets the keys of `block` from a piece, those of `raised` only to nearer ones.
+  void set_depths(const Piece& piece, const Block& block, std::uint64_t raised,
+                  std::uint64_t* keys) const {
+    alignas(64) std::uint64_t found[64];
+    context_.kernel->keys(piece, block, found);
+    for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {
+      const int i = std::countr_zero(m);
+      keys[i] = (raised >> i & 1) != 0 ? std::max(keys[i], found[i]) : found[i];
+    }
+  }
   const Draw& draw_of(std::uint64_t low) {
     const std::uint64_t id = kIdMask - low;
     if (draw_ == nullptr || id - draw_->first_id >= draw_->primitive_count)
@@ -111,52 +164,45 @@ class SampledColors::Finder {
     draw.vertices(kIdMask - low - draw.first_id, index);
     for (int c = 0; c < 3; ++c) vertices[c] = frame_.vertex(draw, index[c]);
   }
-  void begin(std::uint64_t low, Primitive& p) {
+  Primitive& primitive(std::uint64_t low) {
+    Primitive& p = kept_[low % kKept];
+    if (p.low == low) return p;
     const Draw& draw = draw_of(low);
     p.low = low;
     p.kind = Primitive::Kind::point_or_line;
     p.has_plane = false;
-    if (draw.topology != Topology::triangles) return;
-    ProjectedVertex vertices[3];
-    fetch(draw, low, vertices);
+    if (draw.topology != Topology::triangles) return p;
+    ProjectedVertex v[3];
+    fetch(draw, low, v);
     p.kind = Primitive::Kind::clipped;
-    for (const ProjectedVertex& v : vertices)
-      if (v.x_fx8 == kNeedsClip) return;
+    for (const ProjectedVertex& corner : v)
+      if (corner.x_fx8 == kNeedsClip) return p;
     p.kind = Primitive::Kind::triangle;
     Piece piece;
-    set_corners(vertices[0], vertices[1], vertices[2],
-                twice_area(vertices[0], vertices[1], vertices[2]), piece);
+    set_corners(v[0], v[1], v[2], twice_area(v[0], v[1], v[2]), piece);
     p.edges.set(piece);
+    return p;
   }
-  std::uint64_t key_at(Primitive& p, SampleOffset at, int x, int y) {
+  /// A triangle that is not clipped, for its depths.
+  const Piece& plane(Primitive& p) {
     Piece& piece = planes_[p.low % kKept];
-    if (!p.has_plane) {
-      const Draw& draw = draw_of(p.low);
-      ProjectedVertex v[3];
-      fetch(draw, p.low, v);
-      const std::int64_t area = twice_area(v[0], v[1], v[2]);
-      piece.flags = 0;
-      set_corners(v[0], v[1], v[2], area, piece);
-      set_depth_plane(v[0], v[1], v[2], area, piece);
-      add_depth_bias(piece, draw.depth_bias, draw.depth_bias_slope);
-      p.has_plane = true;
-    }
+    if (p.has_plane) return piece;
+    const Draw& draw = draw_of(p.low);
+    ProjectedVertex v[3];
+    fetch(draw, p.low, v);
+    const std::int64_t area = twice_area(v[0], v[1], v[2]);
+    piece.flags = 0;
     piece.low = p.low;
-    return key_of(piece, at, x, y);
+    set_corners(v[0], v[1], v[2], area, piece);
+    set_depth_plane(v[0], v[1], v[2], area, piece);
+    add_depth_bias(piece, draw.depth_bias, draw.depth_bias_slope);
+    p.has_plane = true;
+    return piece;
   }
-  /// The same for a triangle that is clipped, by the nearest of the pieces that cover the place.
-  Place find_clipped(std::uint64_t key, int x, int y) {
-    const std::uint64_t low = key & kIdMask;
+  /// Clips a triangle once for all pixels and samples: its pieces move with its vertices.
+  const Clipped& clipped(std::uint64_t low) {
     Clipped& c = clipped_[low % kKeptClipped];
-    if (c.low != low) begin(low, c);
-    Place place{key, {}};
-    if (covers_at(c, {}, x, y, place)) return place;
-    for (const SampleOffset at : offsets_)
-      if (covers_at(c, at, x, y, place)) return place;
-    return place;  // not reached
-  }
-  /// Clips the triangle once for all pixels and samples: its pieces move with its vertices.
-  void begin(std::uint64_t low, Clipped& c) {
+    if (c.low == low) return c;
     c.low = low;
     c.count = 0;
     const Draw& draw = draw_of(low);
@@ -167,21 +213,12 @@ class SampledColors::Finder {
           c.pieces[c.count++] = piece;
         },
         0, {}, reach_of(offsets_));
-  }
-  bool covers_at(const Clipped& c, SampleOffset at, int x, int y, Place& place) const {
-    std::uint64_t nearest = 0;
-    for (int i = 0; i < c.count; ++i) {
-      if (!c.edges[i].covers(x, y, at)) continue;
-      nearest = std::max(nearest, key_of(c.pieces[i], at, x, y));
-      if (!wants_depth_) break;
-    }
-    if (nearest != 0) place = {nearest, at};
-    return nearest != 0;
+    return c;
   }
 
+  const BinContext& context_;
   const FrameGeometry& frame_;
   std::span<const SampleOffset> offsets_;
-  bool wants_depth_;  ///< else any key of the primitive will do
   const Draw* draw_ = nullptr;
   Primitive* kept_;   ///< kKept, by the low bits of `low`
   Piece* planes_;     ///< their planes, for depth
@@ -216,27 +253,21 @@ void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, 
   packed_ = groups_ = 0;
   // A triangle that covers two opposite samples, or all, covers the centre between them, unless it
   // was clipped: then its pieces may lie around the centre.
-  const bool wants_depth = raster::wants_depth(context.request->shading);
-  const bool knows = !context.clips && !wants_depth;
-  const bool has_places = keys.has_places && !wants_depth;
-  if (knows || has_places) centred_ = covered & ~mixed;
-  for (std::uint64_t m = context.clips ? centred_ : 0; m != 0; m &= m - 1)
-    if ((seen_.places[std::countr_zero(m)] & 15) == SampledKeys::kUnknownPlace)
-      centred_ &= ~(m & -m);
-  const std::uint64_t alike = centred_;
+  const bool knows = !context.clips, wants_depth = raster::wants_depth(context.request->shading);
   Finder finder(context, *this);
+  std::uint64_t alike = covered & ~mixed, asked = wants_depth || !knows ? alike : 0;
+  for (std::uint64_t m = !wants_depth && keys.has_places ? asked : 0; m != 0; m &= m - 1)
+    if ((seen_.places[std::countr_zero(m)] & 15) != SampledKeys::kUnknownPlace) asked &= ~(m & -m);
+  if (asked != 0) alike &= ~asked | finder.centre(bx, by, asked, wants_depth, centre_keys_);
+  centred_ = alike;
   std::uint16_t places[64][kMaxSamples];
   for (std::uint64_t m = covered & ~alike; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
     const int x = x0 + i % kBlockSize, y = y0 + i / kBlockSize;
     std::uint16_t(&at)[kMaxSamples] = places[i];
-    if ((mixed >> i & 1) == 0) {
-      add(context, i, finder.find(keys.plain(keys.at(x, y, 0)), x, y, true), at[0]);
-      std::fill_n(at + 1, samples - 1, at[0]);
-      continue;
-    }
-    const std::uint64_t first = seen_.first[i];
-    const std::uint64_t centred = knows ? seen_.centred[i] : 0;
+    const bool is_mixed = (mixed >> i & 1) != 0;
+    const std::uint64_t first = is_mixed ? seen_.first[i] : 0;
+    const std::uint64_t centred = is_mixed && knows ? seen_.centred[i] : 0;
     for (std::size_t s = 0; s < samples; ++s) {
       const std::size_t same = first >> (4 * s) & 15;
       if (same != s) {
@@ -247,14 +278,15 @@ void SampledColors::resolve(const BinContext& context, const SampledKeys& keys, 
       at[s] = kUncovered;
       if (key == 0) continue;
       const std::uint64_t place =
-          has_places ? seen_.places[i] >> (4 * s) & 15 : SampledKeys::kUnknownPlace;
-      const std::uint64_t plain = keys.plain(key);
-      if (place == 0 || (centred >> s & 1) != 0)
-        add(context, i, {plain, {}}, at[s]);
-      else if (place != SampledKeys::kUnknownPlace)
-        add(context, i, {plain, keys.samples[place - 1]}, at[s]);
-      else
-        add(context, i, finder.find(plain, x, y, false), at[s]);
+          keys.has_places ? seen_.places[i] >> (4 * s) & 15 : SampledKeys::kUnknownPlace;
+      std::uint64_t plain = keys.plain(key);
+      SampleOffset from_centre{};
+      if (place == SampledKeys::kUnknownPlace && (centred >> s & 1) == 0)
+        from_centre = finder.find(plain & kIdMask, x, y, !is_mixed);
+      else if (place != SampledKeys::kUnknownPlace && place != 0)
+        from_centre = keys.samples[place - 1];
+      if (wants_depth) plain = finder.key_at(plain, x, y, from_centre);
+      at[s] = add(context, i, plain, from_centre);
     }
   }
   flush(context);
@@ -295,32 +327,31 @@ std::uint64_t SampledColors::test(const BinContext& context, const Piece& piece,
   ShadingPoints points;
   for (std::uint64_t m = block.mask; m != 0; m &= m - 1) {
     const int i = std::countr_zero(m);
-    const Place place = finder.find(piece.low, block.bx * kBlockSize + i % kBlockSize,
-                                    block.by * kBlockSize + i / kBlockSize, false);
-    points.dx[i] = static_cast<float>(place.at.x) * kPx;
-    points.dy[i] = static_cast<float>(place.at.y) * kPx;
+    const SampleOffset at = finder.find(piece.low, block.bx * kBlockSize + i % kBlockSize,
+                                        block.by * kBlockSize + i / kBlockSize, false);
+    points.dx[i] = static_cast<float>(at.x) * kPx;
+    points.dy[i] = static_cast<float>(at.y) * kPx;
   }
   return context.request->kept(*context.frame, piece, block, &points);
 }
 
-void SampledColors::add(const BinContext& context, int pixel, const Place& place,
-                        std::uint16_t& at) {
+std::uint16_t SampledColors::add(const BinContext& context, int pixel, std::uint64_t key,
+                                 SampleOffset from_centre) {
   const std::uint64_t bit = std::uint64_t{1} << pixel;
-  if (place.at.x == 0 && place.at.y == 0 && (centred_ & bit) == 0) {
-    centre_keys_[pixel] = place.key;
+  if (from_centre.x == 0 && from_centre.y == 0 && (centred_ & bit) == 0) {
+    centre_keys_[pixel] = key;
     centred_ |= bit;
-    at = static_cast<std::uint16_t>(pixel);
-    return;
+    return static_cast<std::uint16_t>(pixel);
   }
   if (packed_ == 64) flush(context);
   constexpr float kPx = 1.0F / kSubpixels;
   const int e = packed_++;
-  packed_keys_[e] = place.key;
+  packed_keys_[e] = key;
   packed_points_.dx[e] = static_cast<float>(pixel % kBlockSize - e % kBlockSize) +
-                         static_cast<float>(place.at.x) * kPx;
+                         static_cast<float>(from_centre.x) * kPx;
   packed_points_.dy[e] = static_cast<float>(pixel / kBlockSize - e / kBlockSize) +
-                         static_cast<float>(place.at.y) * kPx;
-  at = static_cast<std::uint16_t>((groups_ + 1) * 64 + e);
+                         static_cast<float>(from_centre.y) * kPx;
+  return static_cast<std::uint16_t>((groups_ + 1) * 64 + e);
 }
 
 void SampledColors::flush(const BinContext& context) {

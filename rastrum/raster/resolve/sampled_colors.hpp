@@ -34,14 +34,15 @@ class SampledColors {
                                    const Block& block);
 
  private:
-  struct Place;
   struct ExactEdges;
   struct Primitive;
   struct Clipped;
   class Finder;
   static constexpr std::size_t kKept = 256, kKeptClipped = 16;
 
-  void add(const BinContext& context, int pixel, const Place& place, std::uint16_t& at);
+  /// Notes a surface of a pixel, to be shaded. Returns the place of its colour in colors_.
+  std::uint16_t add(const BinContext& context, int pixel, std::uint64_t key,
+                    SampleOffset from_centre);
   void flush(const BinContext& context);
   void shade(const BinContext& context, const std::uint64_t* keys, std::uint64_t mask,
              const ShadingPoints* points, BlockColors& colors);

@@ -2,23 +2,26 @@
 // The lights of the classic shader (formula in material.hpp). One body in lanes
 // (material_light-inl.hpp) or one float (material_scalar.hpp), so the bits are the same.
 
-/// base^(sixteenths / 16), for a base in [0, 1] and whole sixteenths in [0, 2048].
+/// base^(sixteenths / 16), for a base in [0, 1] and sixteenths in [0, 2048].
+RASTRUM_LANES F power(F base, int sixteenths) {
+  F result = set(1), factor = base;
+  for (int part = sixteenths % 16, value = 8; part != 0; part %= value, value /= 2) {
+    factor = square_root(factor);  // base^(value / 16)
+    if (part >= value) result = result * factor;
+  }
+  factor = base;
+  for (int whole = sixteenths / 16; whole != 0; whole /= 2) {
+    if (whole % 2 != 0) result = result * factor;
+    factor = factor * factor;
+  }
+  return result;
+}
+/// For whole sixteenths, which few lanes have of their own.
 RASTRUM_LANES F power(F base, F sixteenths) {
-  const F one = set(1);
-  F whole = as_float(truncated(sixteenths * set(1.0F / 16)));
-  F part = sixteenths - whole * set(16), result = one;
-  F factor = base;  // base^(value / 16)
-  for (float value = 8; value >= 1 && !none(part > set(0)); value *= 0.5F) {
-    factor = square_root(factor);
-    const auto has = part >= set(value);
-    result = choose(has, result * factor, result);
-    part = choose(has, part - set(value), part);
-  }
-  for (factor = base; !none(whole > set(0)); factor = factor * factor) {
-    const F half = as_float(truncated(whole * set(0.5F)));
-    result = choose(whole - half > half, result * factor, result);
-    whole = half;
-  }
+  F result = base;
+  for_each_value(sixteenths, [&](float value, auto here) {
+    result = choose(here, power(base, static_cast<int>(value)), result);
+  });
   return result;
 }
 
@@ -33,7 +36,7 @@ RASTRUM_LANES Arriving classic_arriving(const LightTerm& t, const V3& place) {
   F share = set(1) / (set(c.fade.x) + set(c.fade.y) * distance + set(c.fade.z) * square);
   if (t.kind == LightTerm::Kind::spot) {
     const F cosine = set(0) - dot(set(t.axis), l);
-    const F lobe = power(clamp01(cosine), set(c.sixteenths));
+    const F lobe = power(clamp01(cosine), static_cast<int>(c.sixteenths));
     share = choose(cosine >= set(c.cutoff), share * lobe, set(0));
   }
   return {l, share};
@@ -57,11 +60,12 @@ RASTRUM_LANES V3 classic_light(const LightSet& lights, const ViewRays& rays,
   for (const LightTerm& t : lights.terms) {
     const Arriving a = classic_arriving(t, place);
     const F nl = at_least(dot(n, a.to_light), 0);
-    const V3 sum = v + a.to_light;
-    const V3 half = sum * (set(1) / square_root(at_least(dot(sum, sum), 1e-12F)));
     F shine = set(0);
-    if (const auto mirrors = both(nl > set(0), s.specular > set(0)); !none(mirrors))
+    if (const auto mirrors = both(nl > set(0), s.specular > set(0)); !none(mirrors)) {
+      const V3 sum = v + a.to_light;
+      const V3 half = sum * (set(1) / square_root(at_least(dot(sum, sum), 1e-12F)));
       shine = choose(mirrors, power(clamp01(dot(n, half)), s.sixteenths) * s.specular, shine);
+    }
     const V3 own = (s.base * (set(t.classic.ambient) + set(t.classic.diffuse) * nl) +
                     set(t.classic.specular) * shine) *
                    a.share;

@@ -29,6 +29,10 @@ RASTRUM_HD inline bool both(bool a, bool b) {
 RASTRUM_HD inline bool none(bool mask) {
   return !mask;
 }
+template <class Use>
+RASTRUM_HD void for_each_value(F v, const Use& use) {
+  use(v, true);
+}
 template <class Of>
 RASTRUM_HD V3 lane_by_lane(const Of& of, const V3& a, F b) {
   return of.at(a, b);
