@@ -95,6 +95,13 @@ struct FrameOptions {
 /// is not finite or a clip plane without a direction. Each frame begins with this check.
 void check(const FrameOptions& options);
 
+/// One of the pictures of Renderer::render_many.
+struct ScenePicture {
+  SceneView scene{};
+  Camera camera{};
+  Targets targets{};
+};
+
 struct ProgramDraw;                    // program.hpp
 struct RASTRUM_INSIDE RendererAccess;  // render/access.hpp: renderers that draw in another way
 
@@ -125,6 +132,13 @@ class Renderer {
   /// Error{out_of_memory} with what was asked for; Stopped (above).
   FrameStats render(const SceneView& scene, const Camera& camera, const FrameOptions& frame,
                     const Targets& targets, const Pass& pass = {}, StopToken stop = {});
+
+  /// Draws each of `pictures` as render does. Pictures of at most 512 × 512 pixels are drawn side
+  /// by side, a thread each; then the threads share memory_limit. Larger ones, and those of a
+  /// device, come one after the other. Throws as render for one of them; others may be drawn by
+  /// then.
+  std::vector<FrameStats> render_many(std::span<const ScenePicture> pictures,
+                                      const FrameOptions& frame, StopToken stop = {});
 
   /// As render in one pass, for arrays of the scene (positions, indices, normals, colours) and
   /// targets that are memory of the device that draws: CUDA's with `cuda`, of which nothing is

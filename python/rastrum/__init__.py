@@ -13,7 +13,7 @@ from ._errors import (ArgumentError, ArgumentTypeError, DeviceError, Error, File
 from ._lights import Light
 from ._matplotlib import draw_behind
 from ._rasterize import rasterize
-from ._render import OUTPUTS, Hit, Picture, Pictures, Renderer, digest, render, views4
+from ._render import OUTPUTS, Hit, Picture, Pictures, Renderer, digest, render, render_many, views4
 from ._scene import Scene, as_scene, load
 from ._terrain import Terrain
 from ._things import ColorMapping, Cylinders, Discs, Lines, Material, Mesh, Points, Spheres, Tubes, color_maps, crease_normals
@@ -25,7 +25,7 @@ __all__ = [
     "OUTPUTS", "ArgumentError", "ArgumentTypeError", "Camera", "ColorMapping", "Cylinders", "DeviceError", "Discs", "Error", "FileError",
     "FormatError", "Hit", "Light", "Lines", "Material", "Mesh", "MissingOutputError", "NotFoundError", "OddInputWarning", "OutOfMemoryError", "Picture",
     "PictureIndexError", "Pictures", "Points", "Renderer", "Scene", "Spheres", "Terrain", "Tubes", "UnsupportedError", "View", "as_scene",
-    "color_maps", "crease_normals", "digest", "draw_behind", "load", "mpi", "orbit", "rasterize", "render",
+    "color_maps", "crease_normals", "digest", "draw_behind", "load", "mpi", "orbit", "rasterize", "render", "render_many",
     "trimesh_viewer", "views4",
 ]
 

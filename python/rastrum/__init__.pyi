@@ -201,6 +201,8 @@ class Renderer:
                shadows: bool = False, shadow_size: int = 0, shadow_distance: float = 0.0, tone: str = "none", exposure: float = 0.0, environment_behind: bool = False, annotate: str | Iterable[str] | Mapping[str, Any] = (),
                out: Mapping[str, NDArray[Any]] | None = None,
                progress: Callable[[int, int], None] | bool | None = None) -> Pictures: ...
+    def render_many(self, what: Any, cameras: Camera | Sequence[Camera] | NDArray[Any] | None = None, *,
+                    transforms: ArrayLike | None = None, **frame: Any) -> Pictures: ...
 
 class Terrain:
     def __init__(self, heights: ArrayLike | str | PathLike[str], colors: ArrayLike | str | PathLike[str] | None = None, *,
@@ -231,6 +233,8 @@ class View:
 
 def render(what: Any, camera: Any = None, *, threads: int | None = None, device: str = "threads", memory_limit: int = 0,
            isa: str | None = None, **frame: Any) -> Any: ...
+def render_many(what: Any, cameras: Any = None, *, threads: int | None = None, device: str = "threads", memory_limit: int = 0,
+                isa: str | None = None, **frame: Any) -> Pictures: ...
 def rasterize(pos: ArrayLike, tri: ArrayLike, resolution: tuple[int, int], ranges: ArrayLike | None = None, *,
               out: NDArray[np.float32] | None = None, copy: bool | None = None,
               threads: int | None = None) -> NDArray[np.float32]: ...

@@ -108,7 +108,7 @@ class Camera:
         return Camera(lambda size, ball: made)
 
     def _for_size(self, size, scene=None):
-        return self._make(size, scene._made.ball() if self._asks else None)
+        return self._make(size, scene._made.ball(None) if self._asks else None)
 
     @staticmethod
     @raises_errors

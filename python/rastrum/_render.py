@@ -312,26 +312,72 @@ class Renderer:
         total) after each frame, or True to show a count on a terminal.
         Raises rastrum.Error of the natural class; KeyboardInterrupt in a frame leaves the arrays partly filled.
         """
-        scene, made, frame, arrays, many, notes = _prepared(what, camera, size, outputs, shader, background, samples,
-                                                            transparency, cull, opacity, clip_planes, lights, shadows, shadow_size, shadow_distance, tone,
-                                                            exposure, environment_behind, annotate, out)
+        scenes, made, frame, arrays, many, notes = _prepared(what, camera, size, outputs, shader, background, samples,
+                                                             transparency, cull, opacity, clip_planes, lights, shadows, shadow_size, shadow_distance, tone,
+                                                             exposure, environment_behind, annotate, out)
         if progress is True:
             progress = _bar if sys.stderr.isatty() else None
         if progress is not None and not callable(progress):
             raise ArgumentTypeError(f"progress: {progress!r} cannot be called")
-        stats = self._renderer().render(scene._made, made, frame,
+        states = what.states if isinstance(what, _Many) else None
+        stats = self._renderer().render([scene._made for scene in scenes], states, made, frame,
                                         {name: a if many else a[np.newaxis] for name, a in arrays.items()}, notes, progress)
 
-        def picker(camera):
+        def picker(scene, camera):
             def pick(x, y):
+                if states is not None:
+                    raise UnsupportedError("pick: the scene has other transforms now; draw one state alone to pick in it")
                 scene._read_again()
                 found = self._renderer().pick(scene._made, camera, frame, x, y)  # a forked child has another one
                 return None if found is None else Hit(**found)
             return pick
-        files = scene._read_from
-        if many:
-            return Pictures(arrays, stats, [picker(c) for c in made], files)
-        return Picture(arrays, stats[0], picker(made[0]), files)
+        files = tuple(file for scene in scenes for file in scene._read_from)
+        picks = [picker(scene, c) for scene, c in zip(_for_each(scenes, made), made)]
+        return Pictures(arrays, stats, picks, files) if many else Picture(arrays, stats[0], picks[0], files)
+
+    @names_arguments
+    def render_many(self, what, cameras=None, *, transforms=None, **frame):
+        """Returns Pictures of many scenes, or of many states of one, by one call. Pictures of up to 512 x 512 pixels are drawn side by
+        side, a thread each.
+
+        what: a sequence of N scenes, each anything that as_scene takes; with `transforms` one scene. cameras: a sequence of N, or one
+        for all; None: each scene from the front. transforms: (N, T, 4, 4), from object to world, for the scene's T things in each of N
+        states; files keep their places. frame: as in render; lights of files ("file") are not for several scenes.
+        """
+        states = None
+        if transforms is not None:
+            scenes = [as_scene(what)]
+            states = _states(transforms, len(scenes[0].things))
+        elif isinstance(what, (str, os.PathLike, Mapping)) or not hasattr(what, "__len__"):
+            raise ArgumentTypeError(f"what: must be a sequence of scenes, or one scene with transforms, not {what!r}")
+        else:
+            read = {id(one): as_scene(one) for one in {id(one): one for one in what}.values()}  # each once
+            scenes = [read[id(one)] for one in what]
+        number = len(scenes) if states is None else len(states)
+        if number == 0:
+            raise ArgumentError("what: there is no scene" if states is None else "transforms: there is no state")
+        if not _is_many(cameras):
+            cameras = [cameras] * number
+        if len(cameras) != number:
+            raise ArgumentError(f"cameras: there are {len(cameras)} for {number} pictures")
+        return self.render(_Many(scenes, states), list(cameras), **frame)
+
+
+class _Many(typing.NamedTuple):
+    """A scene for each camera, or one in several states: render_many hands it to render."""
+    scenes: list
+    states: object
+
+
+def _states(transforms, things):
+    states = np.ascontiguousarray(transforms, np.float64)
+    if states.ndim != 4 or states.shape[1:] != (things, 4, 4):
+        raise ArgumentError(f"transforms: the shape is {states.shape} and must be (N, {things}, 4, 4): the scene has {things} things")
+    return states
+
+
+def _for_each(scenes, cameras):
+    return scenes if len(scenes) == len(cameras) else scenes * len(cameras)
 
 
 def _renderer_again(threads, memory_limit, device, isa):
@@ -341,32 +387,41 @@ def _renderer_again(threads, memory_limit, device, isa):
 @raises_errors
 def _prepared(what, camera, size, outputs, shader, background, samples, transparency, cull, opacity, clip_planes,
               lights, shadows, shadow_size, shadow_distance, tone, exposure, environment_behind, annotate, out):
-    """(scene, cameras, frame, arrays, whether there are several pictures, annotations)"""
-    scene = as_scene(what)
+    """(scenes, cameras, frame, arrays, whether there are several pictures, annotations)"""
+    scenes = what.scenes if isinstance(what, _Many) else [as_scene(what)]
     many = _is_many(camera)
-    cameras = [as_camera(c, scene) for c in camera] if many else [as_camera(camera, scene)]
+    cameras = list(camera) if many else [camera]
     if not cameras:
         raise ArgumentError("camera: the sequence has no camera; give at least one")
-    frame, (width, height) = _look(scene, size, shader, background, samples, transparency, cull, opacity, clip_planes, lights,
+    fitted = [c is None for c in cameras]
+    of_each = _for_each(scenes, cameras)
+    cameras = [as_camera(c, scene) for c, scene in zip(cameras, of_each)]
+    frame, (width, height) = _look(scenes, size, shader, background, samples, transparency, cull, opacity, clip_planes, lights,
                                    shadows, shadow_size, shadow_distance, tone, exposure, environment_behind)
-    ball = scene._made.ball() if any(c._asks for c in cameras) else None
-    made = [c._make((width, height), ball) for c in cameras]
+    states = [None] * len(cameras) if not isinstance(what, _Many) or what.states is None else what.states
+    made, balls = [], {}
+    for camera, scene, state in zip(cameras, of_each, states):
+        if camera._asks and (state is not None or scene not in balls):
+            balls[scene] = scene._made.ball(state)
+        made.append(camera._make((width, height), balls.get(scene)))
     notes = _annotations(annotate)
-    if notes is not None and camera is None:
-        made = [notes.with_room(c, scene._made, width, height) for c in made]
-    arrays = _arrays(outputs, out, len(made), many, (height, width), scene.primitives)
+    if notes is not None:
+        made = [notes.with_room(c, scene._made, width, height) if f else c for f, c, scene in zip(fitted, made, of_each)]
+    arrays = _arrays(outputs, out, len(made), many, (height, width), max(scene.primitives for scene in scenes))
     if notes is not None and not {"color", "color_f32"} & set(arrays):
         raise ArgumentError("annotate: is drawn into color or color_f32; ask for one of them by outputs")
-    return scene, made, frame, arrays, many, notes
+    return scenes, made, frame, arrays, many, notes
 
 
-def _look(scene, size, shader, background, samples, transparency, cull, opacity, clip_planes, lights, shadows, shadow_size,
+def _look(scenes, size, shader, background, samples, transparency, cull, opacity, clip_planes, lights, shadows, shadow_size,
           shadow_distance, tone, exposure, environment_behind):
     """(frame, (width, height))"""
     width, height = _size(size)
     if isinstance(samples, bool) or not isinstance(samples, (int, np.integer)):
         raise ArgumentTypeError(f"samples: must be 1, 4, 8 or 16, not {samples!r}")
-    made = _lights(lights, scene._made)
+    if len(scenes) > 1 and (lights == "file" or isinstance(lights, (list, tuple)) and "file" in lights):
+        raise ArgumentError("lights: those of files are not for several scenes")
+    made = _lights(lights, scenes[0]._made)
     if shadows and not any(light.throws_shadows for light in made):
         raise ArgumentError("shadows: only directional lights and spots throw them, and none of the lights does; take lights='studio', or a rastrum.Light")
     return _r.frame(width, height, _text(shader, "shader"), _text(cull, "cull"),
@@ -456,6 +511,12 @@ def render(what, camera=None, *, threads=None, device="threads", memory_limit=0,
     """Draws one frame, or one for each camera. Renderer.render describes `frame`, Renderer the other parameters. A Renderer is
     kept for each set of these."""
     return _kept(threads, device, memory_limit, isa).render(what, camera, **frame)
+
+
+@names_arguments
+def render_many(what, cameras=None, *, threads=None, device="threads", memory_limit=0, isa=None, **frame):
+    """Draws many scenes, or many states of one, by one call. Renderer.render_many describes `frame`, Renderer the other parameters."""
+    return _kept(threads, device, memory_limit, isa).render_many(what, cameras, **frame)
 
 
 def views4(what, *, size=(512, 512), **frame):

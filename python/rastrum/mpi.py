@@ -318,7 +318,7 @@ def render(comm, what, camera=None, *, parts=None, root=0, timeout=0.0, exchange
             if o["progress"] is not None and not isinstance(o["progress"], bool) and not callable(o["progress"]):
                 raise ArgumentTypeError(f"progress: {o['progress']!r} cannot be called")
             own = _own_threads(neighbours) if threads is None else threads
-            return (_renderer(own, device, memory_limit, isa), _look(scene, **{**_looks(o), "lights": lights}),
+            return (_renderer(own, device, memory_limit, isa), _look([scene], **{**_looks(o), "lights": lights}),
                     _r.RanksFrame(int(root), exchange, int(fragment_bytes), _numbers(numbers, mine), has_materials),
                     _annotations(o["annotate"]))
         renderer, (look, size), options, notes = together.alike(raises_errors(prepare))

@@ -62,6 +62,10 @@ template <ViewedValue T>
 [[nodiscard]] IndexView indices(const Array& array, const char* name);
 /// Row-major (4, 4) or (3, 4) of float64.
 [[nodiscard]] Mat4d matrix(const Array& array, const char* name);
+/// All numbers of a C-contiguous array of float64.
+[[nodiscard]] inline std::span<const double> doubles(const Array& array) {
+  return {static_cast<const double*>(array.data()), array.size()};
+}
 
 /// A signal's handler sets it, and frames read it. The kernel may run the handler on any thread,
 /// and so after the frame has ended: these are static and never freed.

@@ -2,77 +2,52 @@
 #include "frame_renderer.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
-#include <exception>
-#include <thread>
-#include <utility>
+
+#include <rastrum/render/access.hpp>
 
 namespace rastrum::python {
-namespace {
 
-/// Pictures up to this size are drawn side by side, a thread each.
-constexpr std::int64_t kSmall = 512 * 512;
-
-}  // namespace
-
-void FrameRenderer::draw_all(std::size_t pictures, std::int64_t pixels, const Draw& draw,
-                             const std::function<void()>& after) {
-  const std::size_t threads = options_.threads > 0 ? static_cast<std::size_t>(options_.threads)
-                                                   : std::thread::hardware_concurrency();
-  const std::size_t workers = std::min(threads, pictures);
+void FrameRenderer::draw_all(
+    std::size_t pictures, std::int64_t pixels,
+    const std::function<void(Renderer& by, Scratch& scratch, std::size_t i)>& draw, StopToken stop,
+    const std::function<void()>& after) {
+  const auto alone = [&](Renderer& by, std::size_t i) { draw(by, of_one_thread_.local(), i); };
+  if (RendererAccess::draw_side_by_side(renderer_, pictures, pixels, alone, stop)) return after();
   // `after` may run a caller's function, which may draw with this renderer: the lock is not held.
-  if (workers < 2 || pixels > kSmall || options_.device != Device::threads) {
-    for (std::size_t i = 0; i < pictures; ++i) {
-      {
-        const std::scoped_lock lock(mutex_);
-        draw(renderer_, scratch_, i);
-      }
-      after();
+  for (std::size_t i = 0; i < pictures; ++i) {
+    {
+      const std::scoped_lock lock(mutex_);
+      draw(renderer_, scratch_, i);
     }
-    return;
+    after();
   }
-  draw_side_by_side(pictures, workers, draw);
-  after();
 }
 
-void FrameRenderer::draw_side_by_side(std::size_t pictures, std::size_t workers, const Draw& draw) {
-  const std::scoped_lock lock(mutex_);
-  while (side_.size() < workers) {
-    RendererOptions one = options_;
-    one.threads = 1;
-    side_.push_back(std::make_unique<Side>(one));
-  }
-  std::atomic<std::size_t> next{0};
-  std::mutex failing;
-  std::exception_ptr failure;
-  {
-    std::vector<std::jthread> running;
-    for (std::size_t w = 0; w < workers; ++w)
-      running.emplace_back([&, side = side_[w].get()] {
-        try {
-          for (std::size_t i; (i = next++) < pictures;) draw(side->renderer, side->scratch, i);
-        } catch (...) {
-          const std::scoped_lock l(failing);
-          if (!failure) failure = std::current_exception();
-          next = pictures;
-        }
-      });
-  }
-  if (failure) std::rethrow_exception(failure);
+SceneView ManyShown::of(std::size_t picture, std::vector<InstanceView>& instances) const {
+  const ArrayScene::Shown& shown = scenes[scenes.size() == 1 ? 0 : picture];
+  if (transforms.empty()) return shown.view;
+  const std::size_t size = 16 * shown.of_things.size();
+  return shown.at(transforms.subspan(picture * size, size), instances);
 }
 
-std::vector<FrameStats> FrameRenderer::render(const SceneView& scene,
+std::vector<FrameStats> FrameRenderer::render(const ManyShown& shown,
                                               const std::vector<Camera>& cameras,
                                               const FrameOptions& o,
                                               const std::vector<Wanted>& outputs,
                                               const Annotations* annotations, StopToken stop,
                                               const std::function<void()>& after) {
   std::vector<FrameStats> stats(cameras.size());
-  std::optional<SceneEdges> edges;
-  if (annotations != nullptr && annotations->edges)
-    edges.emplace(scene, annotations->edges->angle_degrees);
+  const bool edged = annotations != nullptr && annotations->edges;
+  const bool one_scene = shown.scenes.size() == 1 && shown.transforms.empty();
+  std::optional<SceneEdges> of_all;
+  if (edged && one_scene)
+    of_all.emplace(shown.scenes.front().view, annotations->edges->angle_degrees);
   const auto draw = [&](Renderer& by, Scratch& scratch, std::size_t i) {
+    const SceneView scene = shown.of(i, scratch.instances);
+    std::optional<SceneEdges> of_one;
+    if (edged && !one_scene) of_one.emplace(scene, annotations->edges->angle_degrees);
+    const std::optional<SceneEdges>& edges = one_scene ? of_all : of_one;
     Targets targets;
     for (const Wanted& w : outputs) w.kind->attach(targets, w.array, i, o);
     stats[i] = annotations == nullptr
@@ -80,7 +55,7 @@ std::vector<FrameStats> FrameRenderer::render(const SceneView& scene,
                    : scratch.annotator.render(by, scene, cameras[i], o, *annotations, targets,
                                               edges ? &*edges : nullptr, stop);
   };
-  draw_all(cameras.size(), std::int64_t{o.width} * o.height, draw, after);
+  draw_all(cameras.size(), std::int64_t{o.width} * o.height, draw, stop, after);
   return stats;
 }
 
@@ -92,7 +67,7 @@ void FrameRenderer::rasterize(std::span<const ClipTriangles> what, ImageView<Vec
     into.data += i * static_cast<std::size_t>(pixels);
     scratch.clip.draw(by, what[i], into, stop);
   };
-  draw_all(what.size(), pixels, draw, [] {});
+  draw_all(what.size(), pixels, draw, stop, [] {});
 }
 
 }  // namespace rastrum::python

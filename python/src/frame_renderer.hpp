@@ -3,27 +3,37 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include <rastrum/parallel/scratch.hpp>
 #include <rastrum/render.hpp>
 
 #include "outputs.hpp"
 #include "rasterize.hpp"
+#include "scenes.hpp"
 
 namespace rastrum::python {
 
+/// The scenes of several pictures.
+struct ManyShown {
+  std::vector<ArrayScene::Shown> scenes{};  ///< one for each picture, or one for all
+  /// (pictures, things, 4, 4): places of the only scene's things in each picture; or empty.
+  std::span<const double> transforms{};
+
+  /// The scene of a picture. `instances`: memory for it.
+  [[nodiscard]] SceneView of(std::size_t picture, std::vector<InstanceView>& instances) const;
+};
+
 class FrameRenderer {
  public:
-  explicit FrameRenderer(const RendererOptions& options)
-      : options_(options), renderer_(options), scratch_(options) {}
+  explicit FrameRenderer(const RendererOptions& options) : renderer_(options), scratch_(options) {}
 
   /// A picture per camera. `after`: called after each that is drawn alone, once after all that are
   /// drawn side by side.
-  std::vector<FrameStats> render(const SceneView& scene, const std::vector<Camera>& cameras,
+  std::vector<FrameStats> render(const ManyShown& shown, const std::vector<Camera>& cameras,
                                  const FrameOptions& o, const std::vector<Wanted>& outputs,
                                  const Annotations* annotations, StopToken stop,
                                  const std::function<void()>& after);
@@ -38,22 +48,19 @@ class FrameRenderer {
   void rasterize(std::span<const ClipTriangles> what, ImageView<Vec4> first, StopToken stop);
 
  private:
-  using Draw = std::function<void(Renderer& by, Scratch& scratch, std::size_t i)>;
   /// Small pictures side by side, a thread each; others one after the other by all threads.
-  void draw_all(std::size_t pictures, std::int64_t pixels, const Draw& draw,
-                const std::function<void()>& after);
-  void draw_side_by_side(std::size_t pictures, std::size_t workers, const Draw& draw);
+  void draw_all(std::size_t pictures, std::int64_t pixels,
+                const std::function<void(Renderer& by, Scratch& scratch, std::size_t i)>& draw,
+                StopToken stop, const std::function<void()>& after);
 
-  struct Side {
-    explicit Side(const RendererOptions& options) : renderer(options), scratch(options) {}
-    Renderer renderer;
-    Scratch scratch;
-  };
-  RendererOptions options_;
   std::mutex mutex_{};
   Renderer renderer_;
   Scratch scratch_;
-  std::vector<std::unique_ptr<Side>> side_{};
+  parallel::ScratchPool<Scratch> of_one_thread_{[this] {
+    RendererOptions one = renderer_.options();
+    one.threads = 1;
+    return Scratch(one);
+  }};
 };
 
 }  // namespace rastrum::python

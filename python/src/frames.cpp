@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Frames: options by name, arrays as targets; picking; triangles in clip space.
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstdio>
@@ -128,12 +129,19 @@ void interruptible(const Draw& draw) {
   }
 }
 
-nb::list render(FrameRenderer& renderer, const ArrayScene& scene,
-                const std::vector<Camera>& cameras, const FrameOptions& o,
-                const std::map<std::string, Output>& outputs, const Annotations* annotations,
-                const nb::object& progress) {
-  const ArrayScene::Shown shown = scene.show();
-  const std::vector<Wanted> all = wanted(outputs, cameras.size(), o, scene.primitive_count());
+/// `scenes`: one for each camera, or one. `transforms`: (cameras, things, 4, 4) of float64.
+nb::list render(FrameRenderer& renderer, const std::vector<const ArrayScene*>& scenes,
+                const std::optional<Array>& transforms, const std::vector<Camera>& cameras,
+                const FrameOptions& o, const std::map<std::string, Output>& outputs,
+                const Annotations* annotations, const nb::object& progress) {
+  ManyShown shown;
+  std::uint64_t primitives = 0;
+  for (const ArrayScene* const scene : scenes) {
+    shown.scenes.push_back(scene->show());
+    primitives = std::max(primitives, scene->primitive_count());
+  }
+  if (transforms) shown.transforms = doubles(*transforms);
+  const std::vector<Wanted> all = wanted(outputs, cameras.size(), o, primitives);
   std::size_t done = 0;
   const auto after = [&] {
     ++done;
@@ -144,7 +152,7 @@ nb::list render(FrameRenderer& renderer, const ArrayScene& scene,
   std::vector<FrameStats> stats;
   interruptible([&](StopToken stop) {
     done = 0;
-    stats = renderer.render(shown.view, cameras, o, all, annotations, stop, after);
+    stats = renderer.render(shown, cameras, o, all, annotations, stop, after);
   });
   nb::list result;
   for (const FrameStats& s : stats) result.append(stats_of(s));
@@ -265,8 +273,8 @@ void bind_frames(nb::module_& m) {
             new (self) FrameRenderer(o);
           },
           arg("threads"), arg("memory_limit"), arg("device"), arg("isa").none())
-      .def("render", render, arg("scene"), arg("cameras"), arg("frame"), arg("outputs"),
-           arg("annotations").none(), arg("progress").none())
+      .def("render", render, arg("scenes"), arg("transforms").none(), arg("cameras"), arg("frame"),
+           arg("outputs"), arg("annotations").none(), arg("progress").none())
       .def("pick", pick, arg("scene"), arg("camera"), arg("frame"), arg("x"), arg("y"))
       .def("rasterize", rasterize, arg("positions"), arg("triangles"), arg("ranges"), arg("out"));
   m.def("empty", empty, arg("shape"), arg("type"));

@@ -25,6 +25,7 @@ struct Scratch {
 
   Annotator annotator;
   ClipRasterizer clip{};
+  std::vector<InstanceView> instances{};
 };
 
 struct OutputKind {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scenes.hpp"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstring>
@@ -296,6 +297,7 @@ ArrayScene::Shown ArrayScene::show(bool beside_materials) const {
     shown.planes.insert(shown.planes.end(), look.clip_planes.begin(), look.clip_planes.end());
     i.scalar = added.scalar;
     i.scalar_mapping = added.mapping;
+    shown.of_things.push_back(shown.instances.size());
     shown.instances.push_back(i);
   }
   // Now that all planes are there, their memory stays.
@@ -304,6 +306,17 @@ ArrayScene::Shown ArrayScene::show(bool beside_materials) const {
     if (planes[i] > 0) shown.instances[i].clip_planes = rest.first(planes[i]);
   shown.view = {shown.instances, b.materials, b.textures, b.mappings};
   return shown;
+}
+
+SceneView ArrayScene::Shown::at(std::span<const double> transforms,
+                                std::vector<InstanceView>& moved) const {
+  moved = instances;
+  for (std::size_t t = 0; t < of_things.size(); ++t)
+    std::copy_n(transforms.begin() + static_cast<std::ptrdiff_t>(16 * t), 16,
+                &moved[of_things[t]].object_to_world.m[0][0]);
+  SceneView there = view;
+  there.instances = moved;
+  return there;
 }
 
 std::uint64_t ArrayScene::primitive_count() const {
@@ -410,11 +423,16 @@ void bind_scenes(nb::module_& m) {
                    [](const ArrayScene& s) { return !s.show().view.materials.empty(); })
       .def_prop_ro("warnings", [](const ArrayScene& s) { return s.files().warnings; })
       .def("describe", [](const ArrayScene& s) { return io::describe(s.files()); })
-      .def("ball",
-           [](const ArrayScene& s) {
-             const BoundingSphere b = bounding_sphere(s.show().view);
-             return std::tuple(b.centre.x, b.centre.y, b.centre.z, b.radius);
-           })
+      .def(
+          "ball",
+          [](const ArrayScene& s, const std::optional<Array>& transforms) {
+            const ArrayScene::Shown shown = s.show();
+            std::vector<InstanceView> moved;
+            const BoundingSphere b =
+                bounding_sphere(transforms ? shown.at(doubles(*transforms), moved) : shown.view);
+            return std::tuple(b.centre.x, b.centre.y, b.centre.z, b.radius);
+          },
+          arg("transforms").none())
       .def("bounds", [](const ArrayScene& s) -> std::optional<std::pair<Numbers3, Numbers3>> {
         const Bounds b = bounds(s.show().view);
         if (b.vertices_in_use == 0) return std::nullopt;

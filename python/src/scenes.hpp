@@ -5,6 +5,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -36,9 +37,14 @@ class ArrayScene {
   struct Shown {
     std::shared_ptr<const Bound> bound{};
     std::vector<InstanceView> instances{};
+    std::vector<std::size_t> of_things{};                           ///< the instance of each thing
     std::vector<std::shared_ptr<const GeometryView>> geometries{};  ///< not of files
     std::vector<ClipPlane> planes{};
     SceneView view{};
+
+    /// The same with other places, a matrix for each thing. `moved`: memory for it.
+    [[nodiscard]] SceneView at(std::span<const double> transforms,
+                               std::vector<InstanceView>& moved) const;
 
     Shown() = default;
     Shown(Shown&&) = default;

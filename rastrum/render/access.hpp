@@ -2,6 +2,9 @@
 // Parts of a Renderer that are not for users: the pipeline's own draws, and other ways to draw.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 
@@ -38,6 +41,11 @@ struct RendererAccess {
                           const FrameOptions& frame, const Targets& targets, const Pass& pass,
                           const raster::KnownBlocks& known,
                           std::span<const raster::LightShadow> shadows);
+  /// Calls draw(renderer of one thread, i) for i in [0, count) side by side if pictures of so many
+  /// `pixels` are small. Otherwise calls nothing and returns false.
+  [[nodiscard]] static bool draw_side_by_side(
+      Renderer& renderer, std::size_t count, std::int64_t pixels,
+      const std::function<void(Renderer& by, std::size_t i)>& draw, StopToken stop);
   /// The renderer's threads, for work on its pictures; null if it has none.
   [[nodiscard]] static parallel::Threads* threads(Renderer& renderer);
 

@@ -32,6 +32,15 @@
 #include <rastrum/render/tone_pass.hpp>
 
 namespace rastrum {
+namespace {
+
+/// Pictures of up to so many pixels are drawn side by side, a thread each,
+constexpr std::int64_t kSmall = 512 * 512;
+/// if each thread has so much memory.
+constexpr std::uint64_t kEnough = std::uint64_t{64} << 20;
+
+}  // namespace
+
 void check(const FrameOptions& o) {
   const FloatScope floats;
   check_image_size(o.width, o.height);
@@ -114,6 +123,13 @@ struct Renderer::Impl {
   std::unique_ptr<raster::FrameDrawer> drawer;
   Shadows shadows{memory};
   Image<float> own_depth;  ///< of Shader::depth, kept while frames use it
+  /// For small pictures that are drawn side by side.
+  parallel::ScratchPool<Renderer> of_one_thread{[this] {
+    RendererOptions one = options;
+    one.memory_limit /= static_cast<std::uint64_t>(threads->concurrency());
+    one.threads = 1;
+    return Renderer(one);
+  }};
 };
 
 Renderer::Impl::Impl(RendererOptions given, DeviceChoice choice, bool plain, MakeFrameDrawer maker)
@@ -157,6 +173,35 @@ Renderer RendererAccess::make(RendererOptions options, DeviceChoice choice, bool
 FrameStats Renderer::render(const SceneView& scene, const Camera& camera, const FrameOptions& frame,
                             const Targets& targets, const Pass& pass, StopToken stop) {
   return impl_->render_in_turn(scene, camera, {frame, targets, pass}, stop);
+}
+
+std::vector<FrameStats> Renderer::render_many(std::span<const ScenePicture> pictures,
+                                              const FrameOptions& frame, StopToken stop) {
+  std::vector<FrameStats> stats(pictures.size());
+  const auto draw = [&](Renderer& by, std::size_t i) {
+    const ScenePicture& p = pictures[i];
+    stats[i] = by.render(p.scene, p.camera, frame, p.targets, {}, stop);
+  };
+  const std::int64_t pixels = std::int64_t{frame.width} * frame.height;
+  if (!RendererAccess::draw_side_by_side(*this, pictures.size(), pixels, draw, stop))
+    for (std::size_t i = 0; i < pictures.size(); ++i) draw(*this, i);
+  return stats;
+}
+
+bool RendererAccess::draw_side_by_side(Renderer& renderer, std::size_t count, std::int64_t pixels,
+                                       const std::function<void(Renderer&, std::size_t)>& draw,
+                                       StopToken stop) {
+  Renderer::Impl& own = *renderer.impl_;
+  const int threads = own.threads == nullptr ? 1 : own.threads->concurrency();
+  const std::uint64_t share = own.options.memory_limit / static_cast<std::uint64_t>(threads);
+  if (own.options.device != Device::threads || threads < 2 || count < 2 || pixels > kSmall ||
+      (share < kEnough && own.options.memory_limit != 0))
+    return false;
+  parallel::in_turn(own.one_at_a_time, stop, [&] {
+    parallel::for_each_in_order(*own.threads, count,
+                                [&](std::size_t i) { draw(own.of_one_thread.local(), i); });
+  });
+  return true;
 }
 
 FrameStats Renderer::render_in_place(const SceneView& scene, const Camera& camera,
