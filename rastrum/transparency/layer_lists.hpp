@@ -47,6 +47,7 @@ class LayerLists {
     room_ = std::min(allocated_, capacity);
     left_ = misplaced_ = 0;
     std::fill_n(before_, 64, ~std::uint64_t{0});
+    std::fill_n(earlier_, 64, 0U);
     clear();
   }
   /// If fragments were left out, begins their lists, which follow those in the planes, and returns
@@ -54,6 +55,7 @@ class LayerLists {
   [[nodiscard]] bool next_window() {
     if (left_ == 0) return false;
     for (int i = 0; i < 64; ++i) before_[i] = (left_ >> i & 1) != 0 ? cutoff_[i] : 0;
+    for (int i = 0; i < 64; ++i) earlier_[i] += counts_[i];
     left_ = 0;
     clear();
     return true;
@@ -93,6 +95,12 @@ class LayerLists {
   }
 
   [[nodiscard]] std::size_t depth() const { return *std::max_element(counts_, counts_ + 64); }
+  /// The most fragments of a pixel, in all windows so far.
+  [[nodiscard]] std::size_t deepest() const {
+    std::uint32_t most = 0;
+    for (int i = 0; i < 64; ++i) most = std::max(most, earlier_[i] + counts_[i]);
+    return most;
+  }
   /// 64 keys, valid within `mask`. 64-byte aligned.
   [[nodiscard]] const std::uint64_t* plane(std::size_t k) const { return planes_.data() + k * 64; }
   /// 64 owners, likewise.
@@ -158,6 +166,7 @@ class LayerLists {
   std::size_t allocated_ = 0, capacity_ = 0, room_ = 0, filter_ = 0;
   std::uint64_t order_mask_ = 0;
   std::uint32_t counts_[64] = {};
+  std::uint32_t earlier_[64] = {};  ///< counts of earlier windows
   std::uint64_t before_[64] = {};  ///< sort_keys from here on are in earlier windows; 0: all are
   std::uint64_t cutoff_[64] = {};  ///< sort_keys below are left to the next window
   std::uint64_t left_ = 0, misplaced_ = 0;

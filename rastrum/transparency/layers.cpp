@@ -392,12 +392,10 @@ struct LayeredBin::Impl {
           if (mask == 0) continue;
           finished |= blend_->layer({lists_.plane(k), mask, shade(lists_.plane(k), mask, bx, by)});
         }
-        if (pass == 0) {
-          counts.deepest += depth;
-          for (std::size_t k = 0; k < depth; ++k)
-            counts.fragments += static_cast<std::uint64_t>(parallel::popcount(lists_.mask(k)));
-        }
+        for (std::size_t k = 0; k < depth && pass == 0; ++k)
+          counts.fragments += static_cast<std::uint64_t>(parallel::popcount(lists_.mask(k)));
       } while (lists_.next_window() && ++counts.windows != 0);
+      counts.deepest = lists_.deepest();
       counts.misplaced |= lists_.misplaced();
     }
     note(bx, by, counts);

@@ -310,8 +310,8 @@ LayerCounts SampledBlock::blend_sample(std::uint32_t sample, BlockColors& out) {
         if ((mask & ~finished) != 0 && shading_)
           finished |= blend_->layer({lists_.plane(k), mask & ~finished, layer});
       }
-      if (pass == 0) counts.deepest += depth;
     } while (lists_.next_window() && ++counts.windows != 0);
+    counts.deepest = lists_.deepest();
     counts.misplaced |= lists_.misplaced();
   }
   blend_->finish(out);

@@ -67,10 +67,10 @@ TEST(Limits, TenThousandLayers) {
 }
 
 /// Triangles of all sizes everywhere, many more than fit into the limits below.
-LayerScene many_triangles(int count) {
+LayerScene many_triangles(int count, float least, float most) {
   LayerScene scene;
   scene.kind = "many triangles";
-  scene.mesh = shapes::soup(count, 0.01F, 0.05F);
+  scene.mesh = shapes::soup(count, least, most);
   scene.camera.eye = {0, 0, 3};
   const std::vector<Vec3> positions = scene.mesh.positions;
   Random r(8);
@@ -91,6 +91,7 @@ TEST(Limits, LittleMemoryChangesNoPixel) {
   for (const char* const rasterizer : {"grouped", "tiled"})
     for (const int threads : {2, 8})
       limited.emplace_back(options(kSize, kLimit, threads, rasterizer));
+  std::uint64_t windows = 0;
   // Draws with every `step`-th of `limited`, from `first` on.
   const auto expect_same = [&](const LayerScene& scene, std::uint64_t least, std::size_t first,
                                std::size_t step) {
@@ -103,6 +104,8 @@ TEST(Limits, LittleMemoryChangesNoPixel) {
       const auto picture = take_within(renderer, program);
       if (picture) {
         ASSERT_TRUE(same_bits(*picture, expected)) << renderer.options().rasterizer;
+        ASSERT_EQ(picture->counter("deepest"), expected.counter("deepest"));
+        windows += picture->counter("windows");
       } else {
         ASSERT_NE(renderer.options().rasterizer, "grouped");  // grouped draws part by part
       }
@@ -112,8 +115,11 @@ TEST(Limits, LittleMemoryChangesNoPixel) {
   for (int i = 0; i < scenes; ++i)  // with 2 and 8 threads in turn
     expect_same(generate_layers(static_cast<std::uint64_t>(i) + 99, kSize, kSize), 0,
                 static_cast<std::size_t>(i % 2), 2);
-  expect_same(many_triangles(std::min(share_of(100000, 50000), 100000)), kLimit, 0, 1);
+  expect_same(many_triangles(std::min(share_of(100000, 50000), 100000), 0.01F, 0.05F), kLimit, 0,
+              1);
+  expect_same(many_triangles(2000, 0.5F, 1.5F), kLimit, 0, 1);  // hundreds of layers, not alike
   expect_same(layer_stack(13, 1000, 0.004, kSize, kSize), kLimit, 0, 1);
+  EXPECT_GT(windows, 0U);
 }
 
 // 2.6 · 10⁹ fragments in half a GiB. All layers are level, so one pixel's blend is every pixel's.
