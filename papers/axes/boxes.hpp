@@ -13,7 +13,7 @@
 namespace rastrum::family {
 
 /// A piece is small if its box has at most this many pixels (paper 1, table 5, after Schütz et al.,
-/// 2021).
+/// CuRast, 2026).
 inline constexpr std::uint64_t kSmallPx = 128;
 /// `binned` queues a piece if its box has at least this many pixels (paper 2).
 inline constexpr int kLargePx = 4000;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // hybrid: draws small triangles directly into the frame and the others tile by tile onto the same
-// surface (paper 1, section 3.3 and `triangle_hybrid_pineda.fut`, after Schütz et al., 2021). Small
-// ones go through the blocks of their boxes or, as section 4.2 proposes, through rows
+// surface (paper 1, section 3.3 and `triangle_hybrid_pineda.fut`, after Schütz et al., CuRast,
+// 2026). Small ones go through the blocks of their boxes or, as section 4.2 proposes, through rows
 // (Tuning::small_path).
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fast path, without paper 3's scans (its section 5.5 asks for that). Each column keeps a
+// The fast path, without paper 3's scans (its chapter 7 asks for that). Each column keeps a
 // running minimum, the row from which it is drawn down. A sample above that row leaves a mark, its
 // colour, in the first row it shows. Blocks of 64 columns walk their slices near to far in vectors
 // of columns, until every column is full or the map's highest peak would stay hidden. Then each row

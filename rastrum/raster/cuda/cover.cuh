@@ -2,7 +2,7 @@
 // Coverage on a device, by size. A thread finds a piece's samples by cover_8x8. A warp or block of
 // threads tests its edges, a sample a thread. A warp draws small triangles together, which its
 // threads set up one each. Keys are put by atomic maximum. The three sizes come from paper 1's
-// hybrid, section 3.4, and paper 2's queue of large triangles.
+// hybrid, section 3.3, and paper 2's queue of large triangles.
 #pragma once
 
 #include <cstddef>

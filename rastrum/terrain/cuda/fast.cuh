@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The fast path for a GPU, without paper 3's scans (its section 5.5 asks for that) and without the
+// The fast path for a GPU, without paper 3's scans (its chapter 7 asks for that) and without the
 // CPU's marks (fast.cpp), which need a second pass over the picture. A team walks the slices of
 // kTeamColumns neighbouring columns near to far, kTeamSlices at a time:
 //
