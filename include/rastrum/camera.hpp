@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include <rastrum/mat.hpp>
 #include <rastrum/vec.hpp>
@@ -77,6 +79,18 @@ void check_fov(float fov_rad);
 /// view axis is perpendicular to the planes of equal w, y is as in the picture, and an orthographic
 /// camera stands on its near plane. Throws Error{invalid_argument} if these give no three axes.
 [[nodiscard]] Mat4d world_to_camera(const Camera& camera);
+
+/// Where a picture shows a point of the world.
+struct ProjectedPoint {
+  double x = 0,
+         y = 0;  ///< px, the centre of the first pixel at (0.5, 0.5); NaN at and behind the eye
+  double view_depth = 0;  ///< as Targets::view_depth
+};
+/// Finds the points in a W × H picture, in float64; the picture may lie elsewhere than they do.
+/// is_seen (pick.hpp) says whether something hides one. Throws as world_to_clip and
+/// world_to_camera.
+[[nodiscard]] std::vector<ProjectedPoint> project(const Camera& camera, int width, int height,
+                                                  std::span<const Vec3d> points);
 
 // From reversed depth back to world units.
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include <rastrum/camera.hpp>
+#include <rastrum/image.hpp>
 #include <rastrum/scene.hpp>
 
 namespace RASTRUM_API rastrum {
@@ -40,6 +41,11 @@ struct Barycentrics {
 /// lies on the surface. Throws Error{invalid_argument} if the scene has no primitive `at`, and for
 /// an index of its corners that is out of range.
 [[nodiscard]] Vec3d position(const SceneView& scene, const Located& at, const Barycentrics& where);
+
+/// Whether a point of project() lies in the picture with these Targets::view_depth and no surface
+/// hides it: in the 3 × 3 pixels around it some place shows nothing, or a surface that is as far to
+/// a part in 10⁴. So surfaces do not hide the points that lie on them.
+[[nodiscard]] bool is_seen(const ProjectedPoint& point, ImageView<const float> view_depth);
 
 /// The outputs of a frame at one pixel; Targets describes each.
 struct Pick {

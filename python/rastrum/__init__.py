@@ -7,7 +7,7 @@
                         outputs=("color", "depth", "instance"))
 """
 
-from ._camera import Camera, orbit
+from ._camera import Camera, Projected, orbit
 from ._errors import (ArgumentError, ArgumentTypeError, DeviceError, Error, FileError, FormatError, MissingOutputError, NotFoundError,
                       OddInputWarning, OutOfMemoryError, PictureIndexError, UnsupportedError)
 from ._lights import Light
@@ -24,7 +24,7 @@ from . import mpi
 __all__ = [
     "OUTPUTS", "ArgumentError", "ArgumentTypeError", "Camera", "ColorMapping", "Cylinders", "DeviceError", "Discs", "Error", "FileError",
     "FormatError", "Hit", "Light", "Lines", "Material", "Mesh", "MissingOutputError", "NotFoundError", "OddInputWarning", "OutOfMemoryError", "Picture",
-    "PictureIndexError", "Pictures", "Points", "Renderer", "Scene", "Spheres", "Terrain", "Tubes", "UnsupportedError", "View", "as_scene",
+    "PictureIndexError", "Pictures", "Points", "Projected", "Renderer", "Scene", "Spheres", "Terrain", "Tubes", "UnsupportedError", "View", "as_scene",
     "color_maps", "crease_normals", "digest", "draw_behind", "load", "mpi", "orbit", "rasterize", "render", "render_many",
     "trimesh_viewer", "views4",
 ]

@@ -3,11 +3,12 @@
 
 import functools
 import math
+import typing
 
 import numpy as np
 
 from . import _rastrum as _r
-from ._arrays import _numbers, matrix, number, placement, product
+from ._arrays import _numbers, matrix, number, placement, product, whole
 from ._errors import ArgumentError, ArgumentTypeError, raises_errors
 from ._scene import as_scene
 
@@ -84,6 +85,13 @@ def _of_matrix(clip, depth, size, ball):
     return _r.of_matrix(clip, depth)
 
 
+class Projected(typing.NamedTuple):
+    """Points in a picture: Camera.project."""
+    pixel: np.ndarray
+    depth: np.ndarray
+    seen: np.ndarray
+
+
 class Camera:
     """A camera: where it stands and what it sees. Right-handed, x right, y up, looking along its -z; angles in degrees.
 
@@ -109,6 +117,27 @@ class Camera:
 
     def _for_size(self, size, scene=None):
         return self._make(size, scene._made.ball(None) if self._asks else None)
+
+    @raises_errors
+    def project(self, points, size, *, depth=None):
+        """Returns where a picture of size (W, H) shows points (N, 3) of the world: a Projected of `pixel` (N, 2), x and y with the centre of
+        the first pixel at (0.5, 0.5), NaN at and behind the eye; `depth` (N,) along the axis, as the output depth; and `seen` (N,). A
+        point is seen if it lies in the picture and, with that picture's `depth` (H, W), nothing hides it: in the 3 x 3 pixels around
+        it some place shows nothing, or a surface that is as far to a part in 10^4."""
+        width, height = (whole(n, "size", 1, 32768) for n in size)
+        points = _numbers(points, "points")
+        if points.dtype.kind not in "fiu" or points.ndim != 2 or points.shape[1] != 3:
+            raise ArgumentError(f"points: must be (N, 3) numbers, not {points.shape} of {points.dtype}")
+        if depth is not None:
+            depth = np.ascontiguousarray(depth, np.float32)
+            if depth.shape != (height, width):
+                raise ArgumentError(f"depth: the shape is {depth.shape} and must be {(height, width)}, as size says")
+        found = np.empty((len(points), 3))
+        # Planes, which are all that a scene's ball decides, do not move what is seen.
+        seen = _r.project(self._make((width, height), (0.0, 0.0, 0.0, 1.0)), width, height, np.ascontiguousarray(points, np.float64), found, depth)
+        if depth is None:
+            inside = (found[:, 2] > 0) & (found[:, :2] >= 0).all(1) & (found[:, :2] < (width, height)).all(1)
+        return Projected(found[:, :2], found[:, 2], inside if depth is None else np.frombuffer(seen, bool))
 
     @staticmethod
     @raises_errors

@@ -17,6 +17,7 @@
 
 #include <rastrum/camera.hpp>
 #include <rastrum/fit.hpp>
+#include <rastrum/pick.hpp>
 
 #include "scenes.hpp"
 
@@ -115,6 +116,28 @@ Camera of_matrix(const Array& world_to_clip, const std::string& depth) {
   return camera_from_matrix(matrix(world_to_clip, "matrix"), kind);
 }
 
+/// out: (N, 3), x, y and depth of `points`, (N, 3), both C-contiguous float64. `depths`: (H, W) of
+/// float32. Returns a byte for each point: whether it is seen; none without `depths`.
+nb::bytes project_points(const Camera& camera, int width, int height, const Array& points,
+                         const Output& out, const std::optional<Array>& depths) {
+  const std::span<const double> from = doubles(points);
+  std::vector<Vec3d> places(from.size() / 3);
+  for (std::size_t i = 0; i < places.size(); ++i)
+    places[i] = {from[3 * i], from[3 * i + 1], from[3 * i + 2]};
+  const std::vector<ProjectedPoint> found = project(camera, width, height, places);
+  auto* to = static_cast<double*>(out.data());
+  std::string seen;
+  for (const ProjectedPoint& p : found) {
+    *to++ = p.x;
+    *to++ = p.y;
+    *to++ = p.view_depth;
+    if (depths)
+      seen += static_cast<char>(
+          is_seen(p, {static_cast<const float*>(depths->data()), width, height, width}));
+  }
+  return nb::bytes(seen.data(), seen.size());
+}
+
 std::array<std::array<double, 4>, 4> inverse_of(const Array& array) {
   const std::optional<Mat4d> found = inverse(matrix(array, "matrix"));
   if (!found) throw Error(Errc::invalid_argument, "matrix: it has no inverse");
@@ -142,6 +165,8 @@ void bind_cameras(nb::module_& m) {
         arg("near").none(), arg("far").none(), arg("ball").none());
   m.def("fit", fit, arg("scene"), arg("direction"), arg("up"), arg("fov"), arg("orthographic"),
         arg("width"), arg("height"));
+  m.def("project", project_points, arg("camera"), arg("width"), arg("height"), arg("points"),
+        arg("out"), arg("depths").none());
   m.def("zoomed", zoomed, arg("camera"), arg("times"));
   m.def("inverse", inverse_of, arg("matrix"));
   m.def("view", view, arg("name"), arg("up"));

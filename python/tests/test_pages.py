@@ -40,7 +40,7 @@ def run_blocks(page, blocks, names):
 
 def test_the_guide_runs(tmp_path, monkeypatch):
     blocks = blocks_of("python.md")
-    assert len(blocks) == 11
+    assert len(blocks) == 12
     monkeypatch.chdir(tmp_path)
     vertices, faces = ball()
     rows = [*(f"v {x} {y} {z}" for x, y, z in vertices), *(f"f {a} {b} {c}" for a, b, c in faces + 1)]
@@ -65,6 +65,7 @@ def test_the_guide_runs(tmp_path, monkeypatch):
     run_blocks("python.md", blocks, names)
     assert (tmp_path / "bunny.png").stat().st_size > 1000
     assert len(list(tmp_path.glob("step_*.png"))) == 3 and np.load(tmp_path / "depth.npy").max() > 1
+    assert len(names["pictures"]) == 64 and (names["pictures"].color[0] != names["pictures"].color[63]).any()
     assert names["depth"].shape == (4, 128, 128) and names["picture"].color.std() > 10
 
 

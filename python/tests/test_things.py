@@ -71,6 +71,29 @@ def test_looks():
     assert p.color[20, 20, 0] > 80  # the sphere without a material keeps its own colour
 
 
+def test_points_project_to_their_pixels(sheet):
+    size = (90, 60)
+    k = [[70.0, 0, 41.3], [0, 72.0, 30.1], [0, 0, 1]]
+    cameras = (rr.Camera.look_at((2, 1, 3)), rr.Camera.orthographic((2, 1, 3), height=4), rr.Camera.fit(rr.Mesh(*sheet), "iso"),
+               rr.Camera.opencv(k, np.diag([1.0, -1, -1]), [0, 0, 4]), rr.orbit(rr.Mesh(*sheet), 3)[1])
+    for camera in cameras:
+        picture = rr.render(rr.Mesh(*sheet), camera, size=size, outputs=("position", "depth", "id"))
+        y, x = np.nonzero(picture.id >= 0)
+        found = camera.project(picture.position[y, x], size, depth=picture.depth)
+        np.testing.assert_allclose(found.pixel, np.stack([x, y], 1) + 0.5, atol=0.01)
+        np.testing.assert_allclose(found.depth, picture.depth[y, x], rtol=1e-5)
+        assert len(x) > 200 and found.seen.all()
+    k_only = cameras[3].project([[0.0, 0, 0]], size)  # OpenCV counts from the first pixel's centre
+    np.testing.assert_allclose(k_only.pixel[0], [41.3 + 0.5, 30.1 + 0.5], atol=1e-9)
+    behind = cameras[0].project([(4, 2, 6), (2, 1, 3), (-100, 0, 0)], size)
+    assert behind.seen.tolist() == [False, False, False] and np.isnan(behind.pixel[:2]).all() and behind.depth[0] < 0
+    for wrong, message in (([[1, 2]], r"points: must be \(N, 3\)"), ("ab", "points")):
+        with pytest.raises(rr.Error, match=message):
+            cameras[0].project(wrong, size)
+    with pytest.raises(rr.ArgumentError, match=r"depth: the shape is \(3, 3\)"):
+        cameras[0].project([[0, 0, 0]], size, depth=np.zeros((3, 3)))
+
+
 def test_cameras_agree():
     k = np.array([[400, 0, 319.5], [0, 400, 239.5], [0, 0, 1.0]])
     box = rr.Mesh(np.random.default_rng(3).random((60, 3)) + (0, 0, 3))

@@ -153,4 +153,18 @@ Pick surface_of_key(const SceneView& scene, const Camera& camera, const FrameOpt
   return pick;
 }
 
+bool is_seen(const ProjectedPoint& point, ImageView<const float> view_depth) {
+  if (!(point.view_depth > 0 && point.x >= 0 && point.x < view_depth.width && point.y >= 0 &&
+        point.y < view_depth.height))
+    return false;
+  const int x = static_cast<int>(point.x), y = static_cast<int>(point.y);
+  for (int j = std::max(y - 1, 0); j < std::min(y + 2, view_depth.height); ++j)
+    for (int i = std::max(x - 1, 0); i < std::min(x + 2, view_depth.width); ++i) {
+      const auto depth = static_cast<double>(view_depth(i, j));
+      // Nothing is 0, as sensors have it, infinite, or a number of the frame's own below 0.
+      if (!(depth > 0) || point.view_depth <= depth * (1 + 1e-4)) return true;
+    }
+  return false;
+}
+
 }  // namespace rastrum

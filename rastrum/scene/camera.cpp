@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <rastrum/core/elementary.hpp>
 #include <rastrum/core/float_scope.hpp>
@@ -111,6 +112,27 @@ Mat4d world_to_clip(const Camera& camera, int width, int height) {
   const FloatScope floats;
   if (camera.matrix) return *camera.matrix;
   return camera_to_clip(camera, width, height) * world_to_camera(camera);
+}
+
+std::vector<ProjectedPoint> project(const Camera& camera, int width, int height,
+                                    std::span<const Vec3d> points) {
+  const FloatScope floats;
+  const Mat4d to_clip = world_to_clip(camera, width, height), to_camera = world_to_camera(camera);
+  std::vector<ProjectedPoint> seen;
+  seen.reserve(points.size());
+  for (const Vec3d& p : points) {
+    const auto row = [&](const Mat4d& m, int i) {
+      return m.m[i][0] * p.x + m.m[i][1] * p.y + m.m[i][2] * p.z + m.m[i][3];
+    };
+    ProjectedPoint& at = seen.emplace_back();
+    const double w = row(to_clip, 3);
+    const bool ahead = w > 0;
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    at.x = ahead ? (row(to_clip, 0) / w + 1) * width / 2 : kNan;
+    at.y = ahead ? (1 - row(to_clip, 1) / w) * height / 2 : kNan;
+    at.view_depth = -row(to_camera, 2);
+  }
+  return seen;
 }
 
 }  // namespace rastrum

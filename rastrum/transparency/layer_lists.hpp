@@ -167,8 +167,8 @@ class LayerLists {
   std::uint64_t order_mask_ = 0;
   std::uint32_t counts_[64] = {};
   std::uint32_t earlier_[64] = {};  ///< counts of earlier windows
-  std::uint64_t before_[64] = {};  ///< sort_keys from here on are in earlier windows; 0: all are
-  std::uint64_t cutoff_[64] = {};  ///< sort_keys below are left to the next window
+  std::uint64_t before_[64] = {};   ///< sort_keys from here on are in earlier windows; 0: all are
+  std::uint64_t cutoff_[64] = {};   ///< sort_keys below are left to the next window
   std::uint64_t left_ = 0, misplaced_ = 0;
 };
 

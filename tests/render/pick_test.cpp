@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Picks what is under a pixel: the same bits as the images of the whole frame.
+#include <cmath>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include <rastrum/render.hpp>
+#include <rastrum/shapes.hpp>
 
 #include "tests/support/picked.hpp"
 #include "tests/support/random.hpp"
@@ -55,6 +58,61 @@ TEST(Pick, IsWhatTheImagesOfTheWholeFrameHold) {
   }
   EXPECT_GT(seen, scenes);
   EXPECT_GT(empty, scenes / 2);
+}
+
+TEST(Pick, PositionsProjectToTheirPixels) {
+  int compared = 0;
+  for (const bool orthographic : {false, true}) {
+    const Mesh teapot = shapes::teapot(6);
+    const OneInstance scene(teapot.view());
+    Camera camera{
+        .eye = {3, 2, 4}, .orthographic = orthographic, .orthographic_height = 4, .far_plane = 20};
+    for (const bool by_matrix : {false, true}) {
+      if (by_matrix)
+        camera = camera_from_matrix(world_to_clip(camera, kW, kH), ClipDepth::reversed);
+      const Frame s =
+          draw({.threads = 1}, scene.view(), camera, {.width = kW, .height = kH}, kSurfaces);
+      for (int y = 0; y < kH; ++y)
+        for (int x = 0; x < kW; ++x) {
+          if (s.ids(x, y) < 0) continue;
+          const Vec3 p = s.positions(x, y);
+          const ProjectedPoint at =
+              project(camera, kW, kH, std::vector<Vec3d>{{p.x, p.y, p.z}}).at(0);
+          ASSERT_NEAR(at.x, x + 0.5, 0.01);
+          ASSERT_NEAR(at.y, y + 0.5, 0.01);
+          ASSERT_NEAR(at.view_depth, s.view_depth(x, y), 1e-4);
+          ASSERT_TRUE(is_seen(at, s.view_depth));
+          ++compared;
+        }
+    }
+  }
+  EXPECT_GT(compared, 4000);
+}
+
+TEST(Pick, PointsAreSeenUnlessASurfaceHidesThem) {
+  // A wall in the lower half of the picture, one unit before the points.
+  Mesh wall;
+  wall.positions = {{-9, -9, 1}, {9, -9, 1}, {9, 0, 1}, {-9, 0, 1}};
+  wall.indices = {0, 1, 2, 0, 2, 3};
+  const OneInstance scene(wall.view());
+  const Camera camera{.eye = {0, 0, 5}};
+  for (const float nothing : {0.0F, std::numeric_limits<float>::infinity()}) {
+    FrameOptions frame{.width = kW, .height = kH};
+    frame.no_distance = nothing;
+    const Frame s = draw({.threads = 1}, scene.view(), camera, frame, kSurfaces);
+    const std::vector<Vec3d> points{{0, 0.5, 0},  {0, -0.5, 0}, {0, -0.5, 1}, {0, -0.5, 2},
+                                    {0, 0.01, 0}, {0, -40, 1},  {0, 0, 5},    {0, 0, 9}};
+    const bool seen[] = {true, false, true, true, true, false, false, false};
+    const std::vector<ProjectedPoint> at = project(camera, kW, kH, points);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      EXPECT_EQ(is_seen(at[i], s.view_depth), seen[i]) << i;
+    EXPECT_EQ(at[0].x, kW / 2.0);
+    EXPECT_LT(at[0].y, kH / 2.0);
+    EXPECT_EQ(at[0].view_depth, 5);
+    EXPECT_TRUE(std::isnan(at[6].x) && std::isnan(at[7].y));
+    EXPECT_EQ(at[7].view_depth, -4);
+  }
+  expect_refused("field of view", [] { (void)project(Camera{.fov_rad = 4}, kW, kH, {}); });
 }
 
 TEST(Pick, RefusesWhatIsNotThere) {
