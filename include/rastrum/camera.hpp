@@ -82,8 +82,9 @@ void check_fov(float fov_rad);
 
 /// Where a picture shows a point of the world.
 struct ProjectedPoint {
-  double x = 0,
-         y = 0;  ///< px, the centre of the first pixel at (0.5, 0.5); NaN at and behind the eye
+  /// px, the centre of the first pixel at (0.5, 0.5). NaN at and behind the eye of a perspective
+  /// camera.
+  double x = 0, y = 0;
   double view_depth = 0;  ///< as Targets::view_depth
 };
 /// Finds the points in a W × H picture, in float64; the picture may lie elsewhere than they do.

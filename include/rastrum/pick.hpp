@@ -42,9 +42,11 @@ struct Barycentrics {
 /// an index of its corners that is out of range.
 [[nodiscard]] Vec3d position(const SceneView& scene, const Located& at, const Barycentrics& where);
 
-/// Whether a point of project() lies in the picture with these Targets::view_depth and no surface
-/// hides it: in the 3 × 3 pixels around it some place shows nothing, or a surface that is as far to
-/// a part in 10⁴. So surfaces do not hide the points that lie on them.
+/// Whether a point of project() lies before the eye and in the picture with these
+/// Targets::view_depth, and no surface hides it. It is hidden if all of the 3 × 3 pixels around it
+/// show surfaces that are nearer by more than a part in 10⁴, and by more than the farthest of them
+/// is farther than the fifth: surfaces do not hide the points that lie on them. Depths that are not
+/// above 0 are nothing.
 [[nodiscard]] bool is_seen(const ProjectedPoint& point, ImageView<const float> view_depth);
 
 /// The outputs of a frame at one pixel; Targets describes each.

@@ -134,9 +134,9 @@ class Renderer {
                     const Targets& targets, const Pass& pass = {}, StopToken stop = {});
 
   /// Draws each of `pictures` as render does. Pictures of at most 512 × 512 pixels are drawn side
-  /// by side, a thread each; then the threads share memory_limit. Larger ones, and those of a
-  /// device, come one after the other. Throws as render for one of them; others may be drawn by
-  /// then.
+  /// by side, a thread each, if each thread's share of memory_limit is at least 64 MiB. Larger
+  /// ones, and those of a device, come one after the other. Throws as render for one of them;
+  /// others may be drawn by then.
   std::vector<FrameStats> render_many(std::span<const ScenePicture> pictures,
                                       const FrameOptions& frame, StopToken stop = {});
 

@@ -122,8 +122,8 @@ class Camera:
     def project(self, points, size, *, depth=None):
         """Returns where a picture of size (W, H) shows points (N, 3) of the world: a Projected of `pixel` (N, 2), x and y with the centre of
         the first pixel at (0.5, 0.5), NaN at and behind the eye; `depth` (N,) along the axis, as the output depth; and `seen` (N,). A
-        point is seen if it lies in the picture and, with that picture's `depth` (H, W), nothing hides it: in the 3 x 3 pixels around
-        it some place shows nothing, or a surface that is as far to a part in 10^4."""
+        point is seen if it lies in the picture and, with that picture's `depth` (H, W), no surface hides it; surfaces do not hide the
+        points that lie on them."""
         width, height = (whole(n, "size", 1, 32768) for n in size)
         points = _numbers(points, "points")
         if points.dtype.kind not in "fiu" or points.ndim != 2 or points.shape[1] != 3:
@@ -133,11 +133,12 @@ class Camera:
             if depth.shape != (height, width):
                 raise ArgumentError(f"depth: the shape is {depth.shape} and must be {(height, width)}, as size says")
         found = np.empty((len(points), 3))
-        # Planes, which are all that a scene's ball decides, do not move what is seen.
-        seen = _r.project(self._make((width, height), (0.0, 0.0, 0.0, 1.0)), width, height, np.ascontiguousarray(points, np.float64), found, depth)
+        # A scene's ball decides planes alone, which do not move what is seen; in this one all of them fit.
+        made = self._make((width, height), (0.0, 0.0, 0.0, 1e30) if self._asks else None)
+        seen = _r.project(made, width, height, np.ascontiguousarray(points, np.float64), found, depth)
         if depth is None:
             inside = (found[:, 2] > 0) & (found[:, :2] >= 0).all(1) & (found[:, :2] < (width, height)).all(1)
-        return Projected(found[:, :2], found[:, 2], inside if depth is None else np.frombuffer(seen, bool))
+        return Projected(found[:, :2], found[:, 2], inside if depth is None else np.frombuffer(seen, bool).copy())
 
     @staticmethod
     @raises_errors

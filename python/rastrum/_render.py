@@ -16,7 +16,7 @@ import numpy as np
 from . import _rastrum as _r
 from ._annotate import annotations as _annotations
 from ._arrays import color as _color
-from ._arrays import floats, number
+from ._arrays import _numbers, floats, number
 from ._camera import Camera, as_camera
 from ._errors import ArgumentError, ArgumentTypeError, MissingOutputError, PictureIndexError, UnsupportedError, names_arguments, raises_errors
 from ._files import refuse_inputs, shallow, whole
@@ -338,11 +338,11 @@ class Renderer:
     @names_arguments
     def render_many(self, what, cameras=None, *, transforms=None, **frame):
         """Returns Pictures of many scenes, or of many states of one, by one call. Pictures of up to 512 x 512 pixels are drawn side by
-        side, a thread each.
+        side, a thread each, if each thread's share of memory_limit is at least 64 MiB.
 
         what: a sequence of N scenes, each anything that as_scene takes; with `transforms` one scene. cameras: a sequence of N, or one
-        for all; None: each scene from the front. transforms: (N, T, 4, 4), from object to world, for the scene's T things in each of N
-        states; files keep their places. frame: as in render; lights of files ("file") are not for several scenes.
+        for all; None: each scene from the front, as it stands without `transforms`. transforms: (N, T, 4, 4), from object to world, for
+        the scene's T things in each of N states; files keep their places. frame: as in render; lights of files ("file") are not for several scenes.
         """
         states = None
         if transforms is not None:
@@ -351,8 +351,9 @@ class Renderer:
         elif isinstance(what, (str, os.PathLike, Mapping)) or not hasattr(what, "__len__"):
             raise ArgumentTypeError(f"what: must be a sequence of scenes, or one scene with transforms, not {what!r}")
         else:
-            read = {id(one): as_scene(one) for one in {id(one): one for one in what}.values()}  # each once
-            scenes = [read[id(one)] for one in what]
+            given = list(what)
+            read = {id(one): as_scene(one) for one in {id(one): one for one in given}.values()}  # each once
+            scenes = [read[id(one)] for one in given]
         number = len(scenes) if states is None else len(states)
         if number == 0:
             raise ArgumentError("what: there is no scene" if states is None else "transforms: there is no state")
@@ -369,8 +370,12 @@ class _Many(typing.NamedTuple):
     states: object
 
 
+@raises_errors
 def _states(transforms, things):
-    states = np.ascontiguousarray(transforms, np.float64)
+    states = _numbers(transforms, "transforms")
+    if states.dtype.kind not in "fiu":
+        raise ArgumentTypeError(f"transforms: must be an array of numbers, not of {states.dtype}")
+    states = np.ascontiguousarray(states, np.float64)
     if states.ndim != 4 or states.shape[1:] != (things, 4, 4):
         raise ArgumentError(f"transforms: the shape is {states.shape} and must be (N, {things}, 4, 4): the scene has {things} things")
     return states
@@ -395,7 +400,8 @@ def _prepared(what, camera, size, outputs, shader, background, samples, transpar
         raise ArgumentError("camera: the sequence has no camera; give at least one")
     fitted = [c is None for c in cameras]
     of_each = _for_each(scenes, cameras)
-    cameras = [as_camera(c, scene) for c, scene in zip(cameras, of_each)]
+    fits = {scene: as_camera(None, scene) for c, scene in zip(cameras, of_each) if c is None}
+    cameras = [fits[scene] if c is None else as_camera(c, scene) for c, scene in zip(cameras, of_each)]
     frame, (width, height) = _look(scenes, size, shader, background, samples, transparency, cull, opacity, clip_planes, lights,
                                    shadows, shadow_size, shadow_distance, tone, exposure, environment_behind)
     states = [None] * len(cameras) if not isinstance(what, _Many) or what.states is None else what.states
@@ -403,7 +409,7 @@ def _prepared(what, camera, size, outputs, shader, background, samples, transpar
     for camera, scene, state in zip(cameras, of_each, states):
         if camera._asks and (state is not None or scene not in balls):
             balls[scene] = scene._made.ball(state)
-        made.append(camera._make((width, height), balls.get(scene)))
+        made.append(camera._make((width, height), balls[scene] if camera._asks else None))
     notes = _annotations(annotate)
     if notes is not None:
         made = [notes.with_room(c, scene._made, width, height) if f else c for f, c, scene in zip(fitted, made, of_each)]

@@ -8,19 +8,32 @@
 
 namespace rastrum::python {
 
+FrameRenderer::FrameRenderer(const RendererOptions& options)
+    : renderer_(options), scratch_(options) {
+  const parallel::Threads* const threads = RendererAccess::threads(renderer_);
+  of_workers_.resize(threads == nullptr ? 0 : static_cast<std::size_t>(threads->concurrency()));
+}
+
 void FrameRenderer::draw_all(
     std::size_t pictures, std::int64_t pixels,
     const std::function<void(Renderer& by, Scratch& scratch, std::size_t i)>& draw, StopToken stop,
-    const std::function<void()>& after) {
-  const auto alone = [&](Renderer& by, std::size_t i) { draw(by, of_one_thread_.local(), i); };
-  if (RendererAccess::draw_side_by_side(renderer_, pictures, pixels, alone, stop)) return after();
+    const std::function<void(std::size_t)>& after) {
+  RendererOptions one = renderer_.options();
+  one.threads = 1;
+  const auto alone = [&](Renderer& by, std::size_t worker, std::size_t i) {
+    std::unique_ptr<Scratch>& scratch = of_workers_[worker];
+    if (scratch == nullptr) scratch = std::make_unique<Scratch>(one);
+    draw(by, *scratch, i);
+  };
+  if (RendererAccess::draw_side_by_side(renderer_, pictures, pixels, alone, stop))
+    return after(pictures);
   // `after` may run a caller's function, which may draw with this renderer: the lock is not held.
   for (std::size_t i = 0; i < pictures; ++i) {
     {
       const std::scoped_lock lock(mutex_);
       draw(renderer_, scratch_, i);
     }
-    after();
+    after(1);
   }
 }
 
@@ -36,7 +49,7 @@ std::vector<FrameStats> FrameRenderer::render(const ManyShown& shown,
                                               const FrameOptions& o,
                                               const std::vector<Wanted>& outputs,
                                               const Annotations* annotations, StopToken stop,
-                                              const std::function<void()>& after) {
+                                              const std::function<void(std::size_t)>& after) {
   std::vector<FrameStats> stats(cameras.size());
   const bool edged = annotations != nullptr && annotations->edges;
   const bool one_scene = shown.scenes.size() == 1 && shown.transforms.empty();
@@ -67,7 +80,7 @@ void FrameRenderer::rasterize(std::span<const ClipTriangles> what, ImageView<Vec
     into.data += i * static_cast<std::size_t>(pixels);
     scratch.clip.draw(by, what[i], into, stop);
   };
-  draw_all(what.size(), pixels, draw, stop, [] {});
+  draw_all(what.size(), pixels, draw, stop, [](std::size_t) {});
 }
 
 }  // namespace rastrum::python

@@ -3,12 +3,12 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include <rastrum/parallel/scratch.hpp>
 #include <rastrum/render.hpp>
 
 #include "outputs.hpp"
@@ -29,14 +29,14 @@ struct ManyShown {
 
 class FrameRenderer {
  public:
-  explicit FrameRenderer(const RendererOptions& options) : renderer_(options), scratch_(options) {}
+  explicit FrameRenderer(const RendererOptions& options);
 
-  /// A picture per camera. `after`: called after each that is drawn alone, once after all that are
-  /// drawn side by side.
+  /// A picture per camera. Calls after(n) after n more are drawn: one, or all that are drawn side
+  /// by side.
   std::vector<FrameStats> render(const ManyShown& shown, const std::vector<Camera>& cameras,
                                  const FrameOptions& o, const std::vector<Wanted>& outputs,
                                  const Annotations* annotations, StopToken stop,
-                                 const std::function<void()>& after);
+                                 const std::function<void(std::size_t)>& after);
   std::optional<Pick> pick(const SceneView& scene, const Camera& camera, const FrameOptions& o,
                            int x, int y) {
     return renderer_.pick(scene, camera, o, x, y);
@@ -51,16 +51,12 @@ class FrameRenderer {
   /// Small pictures side by side, a thread each; others one after the other by all threads.
   void draw_all(std::size_t pictures, std::int64_t pixels,
                 const std::function<void(Renderer& by, Scratch& scratch, std::size_t i)>& draw,
-                StopToken stop, const std::function<void()>& after);
+                StopToken stop, const std::function<void(std::size_t)>& after);
 
   std::mutex mutex_{};
   Renderer renderer_;
   Scratch scratch_;
-  parallel::ScratchPool<Scratch> of_one_thread_{[this] {
-    RendererOptions one = renderer_.options();
-    one.threads = 1;
-    return Scratch(one);
-  }};
+  std::vector<std::unique_ptr<Scratch>> of_workers_;  ///< by worker of pictures side by side
 };
 
 }  // namespace rastrum::python

@@ -143,11 +143,11 @@ nb::list render(FrameRenderer& renderer, const std::vector<const ArrayScene*>& s
   if (transforms) shown.transforms = doubles(*transforms);
   const std::vector<Wanted> all = wanted(outputs, cameras.size(), o, primitives);
   std::size_t done = 0;
-  const auto after = [&] {
-    ++done;
+  const auto after = [&](std::size_t count) {
+    done += count;
     if (progress.is_none()) return;
     const nb::gil_scoped_acquire lock;
-    progress(cameras.size() == 1 ? 1 : done, cameras.size());
+    progress(done, cameras.size());
   };
   std::vector<FrameStats> stats;
   interruptible([&](StopToken stop) {

@@ -57,6 +57,26 @@ def test_cameras_may_be_one_or_fitted():
     expect_same(fitted, [rr.render(s, size=SIZE, outputs=OUTPUTS, annotate="bounds") for s in scenes])
 
 
+def test_progress_ends_with_all_of_them(cameras):
+    for threads in (1, 2):
+        seen = []
+        rr.render_many([spheres(0)] * 6, cameras, size=SIZE, threads=threads, progress=lambda done, total: seen.append((done, total)))
+        assert seen[-1] == (6, 6)
+
+
+def test_scenes_may_come_from_a_sequence_that_makes_them(cameras):
+    class Made:
+        def __len__(self):
+            return 3
+
+        def __getitem__(self, k):
+            if k >= 3:
+                raise IndexError
+            return [rr.Spheres([[0.3 * k, 0, 0]], 0.7)]
+    many = rr.render_many(Made(), cameras[0], size=SIZE)
+    assert len({rr.digest(one.color) for one in many}) == 3
+
+
 def test_larger_pictures_come_one_after_the_other(cameras):
     seen = []
     scenes = [spheres(k) for k in range(2)]
@@ -69,8 +89,7 @@ def test_larger_pictures_come_one_after_the_other(cameras):
 def test_states_are_scenes_with_these_transforms(cameras, annotate, tmp_path):
     (tmp_path / "floor.obj").write_text("v -3 -1.2 -3\nv 3 -1.2 -3\nv 3 -1.2 3\nv -3 -1.2 3\nf 1 4 3 2\n")
     places = np.array([[moved(k, 0, 0), moved(0, 0, -k) @ np.diag([1, 0.3, 1, 1])] for k in range(4)])
-    own = np.eye(4)
-    scene = rr.Scene([str(tmp_path / "floor.obj"), box(transform=own, color="green"), box(color="blue")])
+    scene = rr.Scene([str(tmp_path / "floor.obj"), box(transform=np.eye(4), color="green"), box(color="blue")])
     look = {"size": SIZE, "outputs": OUTPUTS, "annotate": annotate}
     before = rr.render(scene, cameras[0], **look)
     many = rr.render_many(scene, cameras[:4], transforms=places, **look)
@@ -111,6 +130,7 @@ def test_wrong_calls_say_what_is_wrong(cameras, tmp_path):
             (lambda: rr.render_many([], cameras[0]), rr.ArgumentError, "what: there is no scene"),
             (lambda: rr.render_many([scene] * 3, cameras), rr.ArgumentError, "cameras: there are 6 for 3 pictures"),
             (lambda: rr.render_many(scene, transforms=np.eye(4)), rr.ArgumentError, r"the shape is \(4, 4\) and must be \(N, 1, 4, 4\)"),
+            (lambda: rr.render_many(scene, transforms="abc"), rr.ArgumentTypeError, "transforms: must be an array of numbers"),
             (lambda: rr.render_many(scene, transforms=np.zeros((0, 1, 4, 4))), rr.ArgumentError, "transforms: there is no state"),
             (lambda: rr.render_many(scene, transforms=np.full((2, 1, 4, 4), np.nan), size=SIZE), rr.ArgumentError, "finite"),
             (lambda: rr.render_many([scene, spheres(1)], lights="file"), rr.ArgumentError, "lights: those of files"),

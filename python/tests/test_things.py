@@ -83,6 +83,20 @@ def test_points_project_to_their_pixels(sheet):
         np.testing.assert_allclose(found.pixel, np.stack([x, y], 1) + 0.5, atol=0.01)
         np.testing.assert_allclose(found.depth, picture.depth[y, x], rtol=1e-5)
         assert len(x) > 200 and found.seen.all()
+    place = np.eye(4)
+    thing = rr.Scene([rr.Mesh(*sheet, transform=place)])
+    fitted = rr.Camera.fit(thing)
+    rr.render(thing, fitted, size=size)
+    before = fitted.project([[0.5, 0.2, 0]], size).pixel
+    place[0, 3] = 30  # a fitted camera stays where it is
+    assert (fitted.project([[0.5, 0.2, 0]], size).pixel == before).all()
+    far = rr.Camera.orthographic((0, 0, 0), (0, 0, -100), height=4, near=50)
+    assert far.project([[0, 0, -100]], size).seen.all()
+    corner = rr.Camera.look_at((0, 0, 0), (1, 1, 1), near=0.01)
+    v = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
+    room = rr.Mesh(v, np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]))
+    inside = rr.render(room, corner, size=(64, 48), outputs="depth")
+    assert corner.project([[1, 1, 1], [1.2, 1.2, 1.2]], (64, 48), depth=inside.depth).seen.tolist() == [True, False]
     k_only = cameras[3].project([[0.0, 0, 0]], size)  # OpenCV counts from the first pixel's centre
     np.testing.assert_allclose(k_only.pixel[0], [41.3 + 0.5, 30.1 + 0.5], atol=1e-9)
     behind = cameras[0].project([(4, 2, 6), (2, 1, 3), (-100, 0, 0)], size)

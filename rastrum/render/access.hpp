@@ -41,11 +41,13 @@ struct RendererAccess {
                           const FrameOptions& frame, const Targets& targets, const Pass& pass,
                           const raster::KnownBlocks& known,
                           std::span<const raster::LightShadow> shadows);
-  /// Calls draw(renderer of one thread, i) for i in [0, count) side by side if pictures of so many
-  /// `pixels` are small. Otherwise calls nothing and returns false.
+  /// Calls draw(renderer of one thread, worker, i) for i in [0, count) side by side if pictures of
+  /// so many `pixels` are small; no two calls at a time have the same worker, which is less than
+  /// the number of threads. Otherwise calls nothing and returns false.
   [[nodiscard]] static bool draw_side_by_side(
       Renderer& renderer, std::size_t count, std::int64_t pixels,
-      const std::function<void(Renderer& by, std::size_t i)>& draw, StopToken stop);
+      const std::function<void(Renderer& by, std::size_t worker, std::size_t i)>& draw,
+      StopToken stop);
   /// The renderer's threads, for work on its pictures; null if it has none.
   [[nodiscard]] static parallel::Threads* threads(Renderer& renderer);
 

@@ -2,6 +2,7 @@
 #include <rastrum/pick.hpp>
 
 #include <algorithm>
+#include <utility>
 
 #include <rastrum/core/float_scope.hpp>
 #include <rastrum/core/reject.hpp>
@@ -158,13 +159,19 @@ bool is_seen(const ProjectedPoint& point, ImageView<const float> view_depth) {
         point.y < view_depth.height))
     return false;
   const int x = static_cast<int>(point.x), y = static_cast<int>(point.y);
+  double farthest[5] = {};  // and the next; the last is the middle of nine
   for (int j = std::max(y - 1, 0); j < std::min(y + 2, view_depth.height); ++j)
     for (int i = std::max(x - 1, 0); i < std::min(x + 2, view_depth.width); ++i) {
-      const auto depth = static_cast<double>(view_depth(i, j));
-      // Nothing is 0, as sensors have it, infinite, or a number of the frame's own below 0.
-      if (!(depth > 0) || point.view_depth <= depth * (1 + 1e-4)) return true;
+      auto depth = static_cast<double>(view_depth(i, j));
+      if (!(depth > 0)) return true;
+      for (double& far : farthest)
+        if (depth > far) std::swap(depth, far);
     }
-  return false;
+  // In an inner corner the point itself is the farthest, by less than a pixel's slope.
+  double slope = 0;
+  for (const double far : farthest)
+    if (far > 0) slope = farthest[0] - far;
+  return point.view_depth <= std::max(farthest[0] * (1 + 1e-4), farthest[0] + slope);
 }
 
 }  // namespace rastrum

@@ -2,6 +2,7 @@
 #include <rastrum/render.hpp>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <mutex>
 #include <utility>
@@ -122,14 +123,8 @@ struct Renderer::Impl {
   } kind;
   std::unique_ptr<raster::FrameDrawer> drawer;
   Shadows shadows{memory};
-  Image<float> own_depth;  ///< of Shader::depth, kept while frames use it
-  /// For small pictures that are drawn side by side.
-  parallel::ScratchPool<Renderer> of_one_thread{[this] {
-    RendererOptions one = options;
-    one.memory_limit /= static_cast<std::uint64_t>(threads->concurrency());
-    one.threads = 1;
-    return Renderer(one);
-  }};
+  Image<float> own_depth;               ///< of Shader::depth, kept while frames use it
+  std::vector<Renderer> of_one_thread;  ///< for small pictures that are drawn side by side
 };
 
 Renderer::Impl::Impl(RendererOptions given, DeviceChoice choice, bool plain, MakeFrameDrawer maker)
@@ -183,23 +178,48 @@ std::vector<FrameStats> Renderer::render_many(std::span<const ScenePicture> pict
     stats[i] = by.render(p.scene, p.camera, frame, p.targets, {}, stop);
   };
   const std::int64_t pixels = std::int64_t{frame.width} * frame.height;
-  if (!RendererAccess::draw_side_by_side(*this, pictures.size(), pixels, draw, stop))
+  if (!RendererAccess::draw_side_by_side(
+          *this, pictures.size(), pixels,
+          [&](Renderer& by, std::size_t, std::size_t i) { draw(by, i); }, stop))
     for (std::size_t i = 0; i < pictures.size(); ++i) draw(*this, i);
   return stats;
 }
 
-bool RendererAccess::draw_side_by_side(Renderer& renderer, std::size_t count, std::int64_t pixels,
-                                       const std::function<void(Renderer&, std::size_t)>& draw,
-                                       StopToken stop) {
-  Renderer::Impl& own = *renderer.impl_;
-  const int threads = own.threads == nullptr ? 1 : own.threads->concurrency();
-  const std::uint64_t share = own.options.memory_limit / static_cast<std::uint64_t>(threads);
-  if (own.options.device != Device::threads || threads < 2 || count < 2 || pixels > kSmall ||
-      (share < kEnough && own.options.memory_limit != 0))
+bool RendererAccess::draw_side_by_side(
+    Renderer& renderer, std::size_t count, std::int64_t pixels,
+    const std::function<void(Renderer&, std::size_t, std::size_t)>& draw, StopToken stop) {
+  Renderer::Impl& impl = *renderer.impl_;
+  const int threads = impl.threads == nullptr ? 1 : impl.threads->concurrency();
+  const std::size_t workers = std::min(static_cast<std::size_t>(threads), count);
+  RendererOptions one = impl.options;
+  one.threads = 1;
+  one.memory_limit /= static_cast<std::uint64_t>(threads);
+  const bool limited = impl.options.memory_limit != 0;
+  if (impl.options.device != Device::threads || workers < 2 || pixels > kSmall ||
+      (limited && one.memory_limit < kEnough))
     return false;
-  parallel::in_turn(own.one_at_a_time, stop, [&] {
-    parallel::for_each_in_order(*own.threads, count,
-                                [&](std::size_t i) { draw(own.of_one_thread.local(), i); });
+  parallel::in_turn(impl.one_at_a_time, stop, [&] {
+    if (limited) impl.make_drawer();  // without the scratch of earlier frames
+    while (impl.of_one_thread.size() < workers) impl.of_one_thread.emplace_back(one);
+    std::atomic<std::size_t> next{0};
+    const auto work = [&](std::size_t worker) {
+      try {
+        for (std::size_t i; (i = next++) < count;) draw(impl.of_one_thread[worker], worker, i);
+      } catch (...) {
+        next = count;  // the others begin no more
+        throw;
+      }
+    };
+    const auto forget = [&] {
+      if (limited) impl.of_one_thread.clear();
+    };
+    try {
+      parallel::for_each_in_order(*impl.threads, workers, work);
+    } catch (...) {
+      forget();
+      throw;
+    }
+    forget();
   });
   return true;
 }

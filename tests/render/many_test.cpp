@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Renderer::render_many draws each picture as render does, side by side or one after the other.
+#include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <stop_token>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include <rastrum/error.hpp>
 #include <rastrum/render.hpp>
+#include <rastrum/render/access.hpp>
 #include <rastrum/shapes.hpp>
 #include <rastrum/stop.hpp>
 
@@ -94,6 +98,50 @@ TEST(ManyPictures, ThatAreLargeOrLackMemoryComeOneAfterTheOther) {
   many.expect_each(little, small());
   Renderer enough({.memory_limit = std::uint64_t{200} << 20, .threads = 3});
   many.expect_each(enough, small());
+}
+
+TEST(ManyPictures, AreSideBySideIfSeveralThreadsHaveSeveralSmallOnes) {
+  const auto side_by_side = [](const RendererOptions& options, std::size_t count,
+                               std::int64_t pixels) {
+    Renderer renderer(options);
+    std::atomic<std::size_t> drawn{0}, sum{0};
+    const bool did =
+        RendererAccess::draw_side_by_side(renderer, count, pixels,
+                                          [&](Renderer& by, std::size_t worker, std::size_t i) {
+                                            EXPECT_EQ(by.options().threads, 1);
+                                            EXPECT_LT(worker, 3U);
+                                            ++drawn;
+                                            sum += i;
+                                          },
+                                          {});
+    EXPECT_EQ(drawn, did ? count : 0);
+    EXPECT_EQ(sum, did ? count * (count - 1) / 2 : 0);
+    return did;
+  };
+  constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
+  EXPECT_TRUE(side_by_side({.threads = 3}, 50, 512 * 512));
+  EXPECT_TRUE(side_by_side({.threads = 3}, 2, 100));
+  EXPECT_TRUE(side_by_side({.memory_limit = 192 * kMiB, .threads = 3}, 7, 100));
+  EXPECT_FALSE(side_by_side({.memory_limit = 191 * kMiB, .threads = 3}, 7, 100));
+  EXPECT_FALSE(side_by_side({.threads = 3}, 50, 512 * 512 + 1));
+  EXPECT_FALSE(side_by_side({.threads = 3}, 1, 100));
+  EXPECT_FALSE(side_by_side({.threads = 1}, 50, 100));
+  EXPECT_FALSE(side_by_side({.device = Device::serial}, 50, 100));
+}
+
+TEST(ManyPictures, AreNotBegunAfterAFailure) {
+  Renderer renderer({.threads = 3});
+  std::atomic<int> drawn{0};
+  EXPECT_THROW((void)RendererAccess::draw_side_by_side(
+                   renderer, 10000, 100,
+                   [&](Renderer&, std::size_t, std::size_t i) {
+                     if (i == 0) throw Error(Errc::invalid_argument, "the first one");
+                     ++drawn;
+                     std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                   },
+                   {}),
+               Error);
+  EXPECT_LT(drawn, 1000);
 }
 
 TEST(ManyPictures, OneThatFailsLeavesTheRendererUsable) {

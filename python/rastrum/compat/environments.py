@@ -21,7 +21,11 @@ def attach(env, *, threads=1, samples=None):
     if hasattr(inner, "mujoco_renderer"):
         inner.mujoco_renderer = _OfGymnasium(inner.mujoco_renderer, threads, samples)
     elif hasattr(getattr(env, "physics", None), "render"):
-        env.physics.render = _OfPhysics(env.physics, threads, samples)
+        def take(physics, *_):
+            physics.render = _OfPhysics(physics, threads, samples)
+        take(env.physics)
+        if hasattr(env, "add_extra_hook"):  # a composer's environment compiles its physics anew
+            env.add_extra_hook("after_compile", take)
     else:
         raise ArgumentTypeError(f"env: {type(inner).__module__}.{type(inner).__qualname__} has neither gymnasium's mujoco_renderer nor dm_control's physics")
     return env
@@ -52,7 +56,12 @@ class _OfGymnasium:
             self._option.flags[flag] = value
 
     def __getattr__(self, name):
+        if name.startswith("_"):  # not there yet while it is copied
+            raise AttributeError(name)
         return getattr(self._theirs, name)
+
+    def __setattr__(self, name, value):
+        object.__setattr__(self if name.startswith("_") else self._theirs, name, value)
 
     def render(self, render_mode):
         theirs = self._theirs
@@ -64,8 +73,10 @@ class _OfGymnasium:
         if render_mode == "rgb_array":
             return colours
         renderer.enable_depth_rendering()
-        depth = self._buffer(renderer.render())
-        renderer.disable_depth_rendering()
+        try:
+            depth = self._buffer(renderer.render(), renderer.scene.camera[0].orthographic)
+        finally:
+            renderer.disable_depth_rendering()
         return depth if render_mode == "depth_array" else (colours, depth)
 
     def close(self):
@@ -88,10 +99,12 @@ class _OfGymnasium:
         self._camera.type = mujoco.mjtCamera.mjCAMERA_FREE if theirs.camera_id == -1 else mujoco.mjtCamera.mjCAMERA_FIXED
         return self._camera
 
-    def _buffer(self, depth):
+    def _buffer(self, depth, is_parallel):
         """OpenGL's depth buffer, 0 at the near plane and 1 at the far one, of distances in metres."""
         extent, planes = self._theirs.model.stat.extent, self._theirs.model.vis.map
         near, far = planes.znear * extent, planes.zfar * extent
+        if is_parallel:
+            return np.clip((depth - near) / (far - near), 0, 1).astype(np.float32)
         return np.clip((1 - near / depth) / (1 - near / far), 0, 1).astype(np.float32)
 
 
@@ -111,10 +124,10 @@ class _OfPhysics:
             raise ArgumentTypeError("depth and segmentation are two pictures; ask for one of them")
         renderer = self._kept.renderer(self._physics.model.ptr, height, width, None)
         renderer.update_scene(self._physics.data.ptr, camera_id, scene_option or self._option)
-        if scene_callback is not None:
-            scene_callback(self._physics, renderer.scene)
         flags = renderer.scene.flags.copy()
         try:
+            if scene_callback is not None:
+                scene_callback(self._physics, renderer.scene)
             for flag, value in (render_flag_overrides or {}).items():
                 renderer.scene.flags[getattr(mujoco.mjtRndFlag, f"mjRND_{flag.upper()}") if isinstance(flag, str) else flag] = value
             renderer.enable_depth_rendering() if depth else renderer.disable_depth_rendering()

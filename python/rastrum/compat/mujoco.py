@@ -215,7 +215,7 @@ class Renderer:
         self._objects = np.empty((max_geom + 2, 2), np.int32)  # a row for the sky, too
         self._known = None  # (bytes of geoms, what soft things have of the scene) that _things are made of
         self._things, self._shapes, self._textures, self._scenes = [], {}, {}, {}
-        self._light_bytes, self._lit = _memory(self._scene.lights), (None, [])
+        self._light_bytes, self._lit = _memory(self._scene.lights), {}
         self._sky = next((i for i in range(model.ntex) if model.tex_type[i] == mujoco.mjtTexture.mjTEXTURE_SKYBOX), None)
         self._sky_thing, self._mirrors, self._workers, self.left_out = None, [], [], ()
 
@@ -435,10 +435,9 @@ class Renderer:
 
     def _lights(self):
         scene = self._scene
-        now = self._light_bytes[:scene.nlight].tobytes()
-        if now != self._lit[0]:
-            self._lit = now, [self._light(light) for light in scene.lights[:scene.nlight]] or [_Light.ambient(intensity=0)]
-        made = self._lit[1]
+        now = [row.tobytes() for row in self._light_bytes[:scene.nlight]]
+        self._lit = {row: self._lit.get(row) or self._light(scene.lights[i]) for i, row in enumerate(now)}
+        made = [self._lit[row] for row in now] or [_Light.ambient(intensity=0)]
         return made, bool(scene.flags[_FLAGS.mjRND_SHADOW]) and any(light._made.throws_shadows for light in made)
 
     @staticmethod

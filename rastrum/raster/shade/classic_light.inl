@@ -16,7 +16,7 @@ RASTRUM_LANES F power(F base, int sixteenths) {
   }
   return result;
 }
-/// For whole sixteenths, which few lanes have of their own.
+/// Lanes may have other exponents, whole sixteenths; mostly they do not.
 RASTRUM_LANES F power(F base, F sixteenths) {
   F result = base;
   for_each_value(sixteenths, [&](float value, auto here) {
