@@ -199,27 +199,19 @@ bool RendererAccess::draw_side_by_side(
       (limited && one.memory_limit < kEnough))
     return false;
   parallel::in_turn(impl.one_at_a_time, stop, [&] {
-    if (limited) impl.make_drawer();  // without the scratch of earlier frames
-    while (impl.of_one_thread.size() < workers) impl.of_one_thread.emplace_back(one);
+    if (limited) impl.make_drawer();     // without the scratch of earlier frames
+    std::vector<Renderer> of_this_call;  // then none is kept beside later frames'
+    std::vector<Renderer>& renderers = limited ? of_this_call : impl.of_one_thread;
+    while (renderers.size() < workers) renderers.emplace_back(one);
     std::atomic<std::size_t> next{0};
-    const auto work = [&](std::size_t worker) {
+    parallel::for_each_in_order(*impl.threads, workers, [&](std::size_t worker) {
       try {
-        for (std::size_t i; (i = next++) < count;) draw(impl.of_one_thread[worker], worker, i);
+        for (std::size_t i; (i = next++) < count;) draw(renderers[worker], worker, i);
       } catch (...) {
         next = count;  // the others begin no more
         throw;
       }
-    };
-    const auto forget = [&] {
-      if (limited) impl.of_one_thread.clear();
-    };
-    try {
-      parallel::for_each_in_order(*impl.threads, workers, work);
-    } catch (...) {
-      forget();
-      throw;
-    }
-    forget();
+    });
   });
   return true;
 }
