@@ -117,6 +117,15 @@ def test_dm_controls_physics_draws():
     assert (render(60, 80, 0) == colours).all()
 
 
+def test_a_composers_environment_draws_after_it_compiles_anew():
+    hooks = {}
+    env = attach(types.SimpleNamespace(physics=Physics(), add_extra_hook=lambda name, hook: hooks.setdefault(name, hook)))
+    before = env.physics.render(60, 80, 0)
+    env.physics = Physics()
+    hooks["after_compile"](env.physics, np.random.RandomState(0))
+    assert (env.physics.render(60, 80, 0) == before).all()
+
+
 def test_what_is_not_drawn_is_refused():
     physics = Physics()
     env = attach(types.SimpleNamespace(physics=physics))

@@ -129,15 +129,21 @@ TEST(ManyPictures, AreSideBySideIfSeveralThreadsHaveSeveralSmallOnes) {
   EXPECT_FALSE(side_by_side({.device = Device::serial}, 50, 100));
 }
 
+void wait_a_ms() {
+  std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
 TEST(ManyPictures, AreNotBegunAfterAFailure) {
   Renderer renderer({.threads = 3});
   std::atomic<int> drawn{0};
   EXPECT_THROW((void)RendererAccess::draw_side_by_side(
                    renderer, 10000, 100,
                    [&](Renderer&, std::size_t, std::size_t i) {
+                     // The others have begun by then, so that only the failure ends them.
+                     for (int ms = 0; i == 0 && drawn == 0 && ms < 5000; ++ms) wait_a_ms();
                      if (i == 0) throw Error(Errc::invalid_argument, "the first one");
                      ++drawn;
-                     std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                     wait_a_ms();
                    },
                    {}),
                Error);
